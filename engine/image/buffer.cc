@@ -1,0 +1,70 @@
+#include "engine/image/buffer.h"
+
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include "engine/base/mutex.h"
+#include "engine/base/recycler.h"
+
+namespace vs {
+namespace {
+
+constexpr size_t kPageBytes = 4096;
+
+struct Slab {
+  std::byte* data;
+  size_t size_bytes;
+};
+
+}  // namespace
+
+struct BufferPool::State {
+  ~State() {
+    for (const Slab& slab : free) std::free(slab.data);
+  }
+
+  Slab Take(size_t size_bytes) {
+    MutexLock lock(mutex);
+    for (size_t i = free.size(); i-- > 0;) {
+      if (free[i].size_bytes != size_bytes) continue;
+      const Slab slab = free[i];
+      free[i] = free.back();
+      free.pop_back();
+      return slab;
+    }
+    auto* data = static_cast<std::byte*>(std::aligned_alloc(kPageBytes, size_bytes));
+    if (data == nullptr) throw std::bad_alloc();
+    ++slabs_made;
+    return {data, size_bytes};
+  }
+
+  void Give(Slab slab) {
+    MutexLock lock(mutex);
+    free.push_back(slab);
+  }
+
+  Mutex mutex;
+  std::vector<Slab> free VS_GUARDED_BY(mutex);
+  uint64_t slabs_made VS_GUARDED_BY(mutex) = 0;
+  Recycler<std::byte> control_blocks;
+};
+
+BufferPool::BufferPool() : state_(std::make_shared<State>()) {}
+BufferPool::~BufferPool() = default;
+
+Buffer BufferPool::Acquire(size_t size_bytes) {
+  const size_t rounded = (size_bytes + kPageBytes - 1) / kPageBytes * kPageBytes;
+  const Slab slab = state_->Take(rounded == 0 ? kPageBytes : rounded);
+  std::shared_ptr<const void> owner(
+      slab.data, [state = state_, slab](const void*) { state->Give(slab); },
+      state_->control_blocks);
+  return {slab.data, size_bytes, Place::kHost, std::move(owner)};
+}
+
+uint64_t BufferPool::SlabsMade() const {
+  MutexLock lock(state_->mutex);
+  return state_->slabs_made;
+}
+
+}  // namespace vs

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+namespace vs {
+
+// Where the bytes of a Buffer are.
+enum class Place : uint8_t {
+  kHost,     // ordinary memory
+  kPinned,   // host memory that a GPU can copy from directly
+  kDevice,   // GPU memory; the CPU must not touch it
+  kForeign,  // memory of a driver or another process, readable by the CPU
+};
+
+// Ref-counted bytes. Copying a Buffer shares them; they are given back (to a pool, a camera, a
+// driver) when the last copy goes. Only the creator writes, and only before the first share.
+struct Buffer {
+  std::byte* data = nullptr;
+  size_t size_bytes = 0;
+  Place place = Place::kHost;
+  std::shared_ptr<const void> owner;
+};
+
+// Recycles page-aligned host memory. After the first frames every Acquire is served from memory
+// that an earlier frame gave back, without asking the heap. Thread-safe; buffers may outlive the
+// pool. The memory is not cleared.
+class BufferPool {
+ public:
+  BufferPool();
+  ~BufferPool();
+  BufferPool(const BufferPool&) = delete;
+  BufferPool& operator=(const BufferPool&) = delete;
+
+  Buffer Acquire(size_t size_bytes);
+
+  // Slabs that this pool ever took from the heap: constant once the sequence is warm.
+  uint64_t SlabsMade() const;
+
+ private:
+  struct State;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace vs
