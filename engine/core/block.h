@@ -1,0 +1,79 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/base/status.h"
+#include "engine/core/environment.h"
+#include "engine/core/frame_context.h"
+#include "engine/core/param.h"
+#include "engine/core/port.h"
+#include "engine/core/registry.h"
+#include "engine/image/buffer.h"
+
+namespace vs {
+
+// One step of a sequence. Ports and parameters are declared as members and so describe
+// themselves; an engineer's whole work on a block is one file that ends in VS_REGISTER_BLOCK.
+//
+// A block is cheap to construct: the registry makes one just to describe it. Files, cameras and
+// memory are taken in Start(). Never called by two threads at once; one frame after the other, in
+// order. An error of Run() ends this frame in this branch, is counted and shown; the next frame is
+// tried again. An exception ends the run of the sequence.
+class Block {
+ public:
+  Block() = default;
+  virtual ~Block() = default;
+  Block(const Block&) = delete;
+  Block& operator=(const Block&) = delete;
+
+  // Before the first frame, parameters set. An error keeps the sequence from starting.
+  virtual Status Start() { return Status(); }
+  // One frame: reads inputs and parameters, sets outputs.
+  virtual Status Run() = 0;
+  // After the last frame, also when Start() failed or was never called. Must end waits.
+  virtual void Stop() {}
+  // Of a block without required inputs (a source): is there something to run for? A source whose
+  // answer changes to true on another thread says so by Wake().
+  virtual bool Ready() { return true; }
+  // Of a source: pictures that never entered the sequence because it was busy.
+  virtual uint64_t Dropped() const { return 0; }
+
+  const std::vector<PortBase*>& inputs() const { return inputs_; }
+  const std::vector<PortBase*>& outputs() const { return outputs_; }
+  const std::vector<ParamBase*>& params() const { return params_; }
+  // Null when there is none of that name.
+  ParamBase* FindParam(std::string_view name) const;
+  PortBase* FindInput(std::string_view name) const;
+  PortBase* FindOutput(std::string_view name) const;
+
+  // For whoever runs the block: set before Start(), and before each Run().
+  void Attach(const Environment* environment, std::function<void()> wake);
+  void SetFrame(FrameContext* frame) { frame_ = frame; }
+
+ protected:
+  const Environment& environment() const { return *environment_; }
+  // The frame that Run() is working on. A source fills in the capture fields.
+  FrameContext& frame() const { return *frame_; }
+  // Memory for outputs, recycled from earlier frames: Image<uint16_t> out(pool(), width, height).
+  BufferPool& pool() { return pool_; }
+  // Of a source: Ready() may have become true. From any thread, between Start() and Stop().
+  void Wake() const {
+    if (wake_) wake_();
+  }
+
+ private:
+  friend class ParamBase;
+  friend class PortBase;
+
+  std::vector<PortBase*> inputs_;
+  std::vector<PortBase*> outputs_;
+  std::vector<ParamBase*> params_;
+  const Environment* environment_ = nullptr;
+  FrameContext* frame_ = nullptr;
+  std::function<void()> wake_;
+  BufferPool pool_;
+};
+
+}  // namespace vs

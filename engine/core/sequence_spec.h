@@ -1,0 +1,54 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/status.h"
+#include "engine/core/param.h"
+
+namespace vs {
+
+struct BlockSpec {
+  std::string id;    // stable within the sequence: [a-z][a-z0-9_]*, at most 63 characters
+  std::string type;  // name in the registry
+  std::map<std::string, ParamValue> params;  // those that differ from the initial value
+  double x = 0;                              // place in the editor
+  double y = 0;
+
+  bool operator==(const BlockSpec&) const = default;
+};
+
+// From an output to an input. An output may feed many inputs, an input has one source.
+struct Connection {
+  std::string from_block;
+  std::string from_port;
+  std::string to_block;
+  std::string to_port;
+
+  auto operator<=>(const Connection&) const = default;
+};
+
+// A sequence as plain data: what is stored, sent, compared and edited.
+struct SequenceSpec {
+  std::string id;                // like a block's id
+  std::string description;       // for people
+  int priority = 0;              // -10 .. 10; higher runs first when workers are short
+  int max_frames_in_flight = 2;  // 1 .. 16; more = higher rate on several cores, never more delay
+                                 // than that many frames
+  std::vector<BlockSpec> blocks;
+  std::vector<Connection> connections;
+
+  bool operator==(const SequenceSpec&) const = default;
+};
+
+// Canonical JSON: keys sorted, blocks and connections in a fixed order, two spaces, numbers in
+// their shortest exact form. Equal sequences give equal text, so a diff shows what changed.
+std::string ToJson(const SequenceSpec& spec);
+
+// Refuses malformed JSON (line and column), unknown keys and wrong types, naming the place.
+// Whether blocks exist and fit is CheckSequence's question.
+Result<SequenceSpec> ParseSequence(std::string_view json);
+
+}  // namespace vs

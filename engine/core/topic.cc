@@ -1,0 +1,82 @@
+#include "engine/core/topic.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/str.h"
+
+namespace vs {
+
+// The lock makes "after the handle is gone the listener is not called" true while another thread
+// is publishing.
+struct Topic::Subscription {
+  explicit Subscription(Listener f) : listener(std::move(f)) {}
+
+  Mutex mutex;
+  Listener listener VS_GUARDED_BY(mutex);
+};
+
+void Topic::Publish(Sample sample) {
+  std::shared_ptr<const Sample> published;
+  std::vector<std::shared_ptr<Subscription>> subscriptions;
+  {
+    MutexLock lock(mutex_);
+    sample.seq = next_seq_++;
+    published = std::make_shared<const Sample>(std::move(sample));
+    latest_ = published;
+    std::erase_if(subscriptions_, [](const auto& weak) { return weak.expired(); });
+    for (const auto& weak : subscriptions_) {
+      if (auto subscription = weak.lock()) subscriptions.push_back(std::move(subscription));
+    }
+  }
+  for (const auto& subscription : subscriptions) {
+    MutexLock lock(subscription->mutex);
+    if (subscription->listener) subscription->listener(published);
+  }
+}
+
+std::shared_ptr<const Sample> Topic::Latest() const {
+  MutexLock lock(mutex_);
+  return latest_;
+}
+
+std::shared_ptr<void> Topic::Listen(Listener listener) {
+  auto subscription = std::make_shared<Subscription>(std::move(listener));
+  {
+    MutexLock lock(mutex_);
+    subscriptions_.push_back(subscription);
+  }
+  return std::shared_ptr<void>(subscription.get(), [subscription](void*) {
+    MutexLock lock(subscription->mutex);
+    subscription->listener = nullptr;
+  });
+}
+
+Result<std::shared_ptr<Topic>> TopicHub::Open(const std::string& name, const std::string& type) {
+  MutexLock lock(mutex_);
+  std::weak_ptr<Topic>& entry = topics_[name];
+  if (!entry.expired()) {
+    return AlreadyExists(
+        Str("a running sequence already publishes \"", name, "\": choose another name"));
+  }
+  auto topic = std::make_shared<Topic>(name, type);
+  entry = topic;
+  return topic;
+}
+
+std::shared_ptr<Topic> TopicHub::Find(const std::string& name) const {
+  MutexLock lock(mutex_);
+  const auto found = topics_.find(name);
+  return found == topics_.end() ? nullptr : found->second.lock();
+}
+
+std::vector<std::shared_ptr<Topic>> TopicHub::All() const {
+  MutexLock lock(mutex_);
+  std::vector<std::shared_ptr<Topic>> all;
+  for (const auto& [name, weak] : topics_) {
+    if (auto topic = weak.lock()) all.push_back(std::move(topic));
+  }
+  return all;
+}
+
+}  // namespace vs
