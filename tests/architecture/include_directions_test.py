@@ -1,0 +1,111 @@
+"""The arrows of the house: which folder may include which (README.md, "The house")."""
+
+import pathlib
+import re
+import sys
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SOURCES = {".h", ".cc", ".cu"}
+
+# folder -> the folders of ours that its files may include, besides itself. The longest matching
+# key counts.
+ALLOWED = {
+    "engine/base": set(),
+    "engine/image": {"engine/base"},
+    "engine/core": {"engine/image", "engine/base"},
+    "engine/calibration": {"engine/image", "engine/base"},
+    "engine/stereo": {"engine/image", "engine/base"},
+    "engine/camera": {"engine/image", "engine/base"},
+    "engine/sim": {"engine/camera", "engine/image", "engine/base"},
+    "engine/blocks": {"engine"},
+    "gpu": {"engine/base", "engine/image", "engine/stereo"},
+    "proto": set(),
+    "server": {"engine", "gpu", "proto"},
+    "client": {"proto"},
+    "web": {"proto"},
+    "tests": {"engine", "gpu", "proto", "server", "client"},
+}
+
+# Libraries that only these folders may know.
+LIBRARIES = {
+    r"grpc|grpcpp": {"server", "client", "tests", "proto"},
+    r"google/protobuf": {"server", "client", "tests", "proto"},
+    r"sqlite3\.h": {"server", "tests"},
+    r"arv\.h": {"engine/camera"},
+}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def folder_of(path):
+    """The key of ALLOWED that `path` belongs to; None when it belongs to none of ours."""
+    parts = path.split("/")
+    for length in (2, 1):
+        key = "/".join(parts[:length])
+        if key in ALLOWED and len(parts) > length:
+            return key
+    return None
+
+
+def inside(folder, allowed):
+    return any(folder == one or folder.startswith(one + "/") for one in allowed)
+
+
+def faults_of(path, text):
+    """What is wrong with the includes of the file `path` (relative to the root)."""
+    own = folder_of(path)
+    if own is None:
+        return [f"{path}: lies in no folder that the table of include directions knows"]
+    faults = []
+    for number, line in enumerate(text.splitlines(), 1):
+        match = INCLUDE.match(line)
+        if not match:
+            continue
+        target = match.group(2)
+        other = folder_of(target)
+        if other and other != own and not inside(other, ALLOWED[own]):
+            faults.append(f"{path}:{number}: {own} must not include {target}")
+        if match.group(1) == '"' and other is None and not target.endswith(".pb.h"):
+            faults.append(f"{path}:{number}: write {target} with its full path from the root")
+        for library, users in LIBRARIES.items():
+            if re.match(rf"({library})(/|$|\.)", target + "/") and not inside(own, users):
+                faults.append(f"{path}:{number}: {own} must not know {target}")
+    return faults
+
+
+class IncludeDirections(unittest.TestCase):
+    def test_every_include_follows_an_arrow(self):
+        faults, files = [], 0
+        for top in ("engine", "gpu", "server", "client", "proto", "tests"):
+            for path in sorted((ROOT / top).rglob("*")):
+                if path.suffix in SOURCES:
+                    files += 1
+                    faults += faults_of(str(path.relative_to(ROOT)), path.read_text())
+        self.assertGreater(files, 20)
+        self.assertEqual([], faults, "\n" + "\n".join(faults))
+
+    def test_an_arrow_that_runs_back_up_is_found(self):
+        self.assertEqual(1, len(faults_of("engine/base/log.cc", '#include "engine/image/image.h"')))
+        self.assertEqual(1, len(faults_of("engine/stereo/a.cc", '#include "engine/core/block.h"')))
+        self.assertEqual(1, len(faults_of("engine/core/a.cc", "#include <grpcpp/grpcpp.h>")))
+        self.assertEqual(1, len(faults_of("client/a.cc", '#include "engine/base/status.h"')))
+        self.assertEqual(1, len(faults_of("engine/core/a.cc", '#include "block.h"')))
+        self.assertEqual([], faults_of("engine/sim/a.cc", '#include "engine/camera/camera_source.h"'))
+
+    def test_every_second_level_folder_has_a_short_readme(self):
+        missing = []
+        for top in ("engine", "server", "client", "proto", "tests"):
+            for folder in sorted(path for path in (ROOT / top).glob("*") if path.is_dir()):
+                if folder.name == "__pycache__":
+                    continue
+                readme = folder / "README.md"
+                if not readme.exists():
+                    missing.append(f"{folder.relative_to(ROOT)}: no README.md")
+                elif len(readme.read_text().splitlines()) > 20:
+                    missing.append(f"{readme.relative_to(ROOT)}: longer than 20 lines")
+        self.assertEqual([], missing, "\n" + "\n".join(missing))
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
