@@ -11,23 +11,10 @@
 #include <vector>
 
 #include "engine/base/status.h"
+#include "engine/camera/camera_uri.h"
 #include "engine/image/frame.h"
 
 namespace vs {
-
-// Where a camera is: "scheme:address?key=value&key=value".
-//   gev:21000001          GigE Vision camera by serial number
-//   gev-ip:192.168.1.20   GigE Vision camera by address
-//   sim:demo#left         the simulated scene, one of its two cameras
-//   file:/data/run7?pattern=*_left.png&loop=true&fps=30
-struct CameraUri {
-  std::string scheme;
-  std::string address;
-  std::map<std::string, std::string> options;
-
-  static Result<CameraUri> Parse(std::string_view text);
-  std::string ToString() const;
-};
 
 // A GenICam feature's value. Enumerations are strings; a command takes and gives `true`.
 using FeatureValue = std::variant<bool, int64_t, double, std::string>;
@@ -64,8 +51,8 @@ struct CameraStats {
   uint64_t frames = 0;           // delivered whole
   uint64_t incomplete = 0;       // arrived with packets missing, not delivered
   uint64_t rejected_stale = 0;   // claimed to be new but were not (frame id or time ran back)
-  uint64_t lost = 0;             // gaps in the camera's frame numbers
-  uint64_t underruns = 0;        // no free buffer: the pictures were held too long downstream
+  uint64_t lost = 0;             // numbers missing between delivered frames, for any reason
+  uint64_t underruns = 0;        // times that no buffer was free: pictures were held downstream
   uint64_t resend_requests = 0;  // packets asked for again
   uint64_t resent = 0;           // packets that came again
   uint64_t reconnects = 0;
@@ -124,8 +111,9 @@ class CameraDrivers {
   std::map<std::string, CameraFactory> factories_;
 };
 
-#define VS_REGISTER_CAMERA(scheme, factory)                    \
-  [[maybe_unused]] static const bool kCameraDriverRegistered = \
+// The last line of a driver's file; also for two schemes of one driver.
+#define VS_REGISTER_CAMERA(scheme, factory)                                              \
+  [[maybe_unused]] static const bool VS_CONCAT_(kCameraDriverRegistered_, __COUNTER__) = \
       ::vs::CameraDrivers::Get().Add(scheme, factory)
 
 }  // namespace vs
