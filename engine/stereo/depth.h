@@ -1,0 +1,19 @@
+#pragma once
+
+#include "engine/base/status.h"
+#include "engine/image/buffer.h"
+#include "engine/image/depth_map.h"
+#include "engine/image/disparity_map.h"
+
+namespace vs {
+
+// Depth of each valid pixel, NaN elsewhere:
+//   depth_m = focal_px * baseline_m / (disparity_px + principal_offset_px)
+// A point at or beyond infinity (the sum is not positive) is NaN. FAILED_PRECONDITION when the
+// map's geometry is not known (focal length or baseline not positive).
+Result<DepthMap> DepthFromDisparity(const DisparityMap& map, BufferPool& pool);
+
+// The disparity in px that a point at `depth_m` has; NaN for NaN.
+Result<Image<float>> DisparityFromDepth(const DepthMap& map, BufferPool& pool);
+
+}  // namespace vs

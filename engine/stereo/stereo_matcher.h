@@ -1,0 +1,66 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/status.h"
+#include "engine/image/buffer.h"
+#include "engine/image/disparity_map.h"
+#include "engine/image/image.h"
+#include "engine/stereo/sgm_settings.h"
+
+namespace vs {
+
+// Computes disparity by semi-global matching (Hirschmueller 2008). A backend implements it and
+// registers with VS_REGISTER_MATCHER. All backends answer alike, bit for bit; `reference` is the
+// plain one that defines the answer.
+//
+// A matcher keeps its working memory from picture to picture, so make one per stream of pictures;
+// it must not be called by two threads at once.
+class StereoMatcher {
+ public:
+  virtual ~StereoMatcher() = default;
+
+  // Matches a rectified pair. The result's memory comes from `pool`; its geometry holds the size
+  // only, the caller knows the rest. `threads` (at least 1) changes the time, never the result.
+  // Errors: INVALID_ARGUMENT as ValidateSettings and ValidatePair say, RESOURCE_EXHAUSTED when
+  // there is not enough memory.
+  virtual Result<DisparityMap> Match(const GreyImage& left, const GreyImage& right,
+                                     const SgmSettings& settings, int threads,
+                                     BufferPool& pool) = 0;
+};
+
+// NOT_FOUND or UNAVAILABLE when this machine cannot run the backend (no such device, no such
+// instructions).
+using MatcherFactory = std::function<Result<std::unique_ptr<StereoMatcher>>()>;
+
+// The backends. Filled while the program starts, read-only afterwards.
+class StereoMatchers {
+ public:
+  static StereoMatchers& Get();
+
+  // A higher rank is a faster backend: 0 reference, 100 CPU, 200 GPU.
+  bool Add(std::string name, int speed_rank, MatcherFactory factory);
+  // Fastest first.
+  std::vector<std::string> Names() const;
+  // `name` of a backend, or "auto" for the fastest that this machine can run. NOT_FOUND names the
+  // backends that there are.
+  Result<std::unique_ptr<StereoMatcher>> Make(std::string_view name) const;
+
+ private:
+  struct Entry {
+    std::string name;
+    int speed_rank;
+    MatcherFactory factory;
+  };
+  std::vector<Entry> entries_;  // fastest first
+};
+
+#define VS_REGISTER_MATCHER(name, speed_rank, factory)    \
+  [[maybe_unused]] static const bool kMatcherRegistered = \
+      ::vs::StereoMatchers::Get().Add(name, speed_rank, factory)
+
+}  // namespace vs
