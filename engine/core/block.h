@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -34,10 +35,11 @@ class Block {
   virtual Status Run() = 0;
   // After the last frame, also when Start() failed or was never called. Must end waits.
   virtual void Stop() {}
-  // Of a block without required inputs (a source): is there something to run for? A source whose
-  // answer changes to true on another thread says so by Wake().
+  // Of a source (a block without connected inputs): is there something to run for? Asked again
+  // after each frame and after each Wake(), so a source whose answer changes to true on another
+  // thread must call Wake().
   virtual bool Ready() { return true; }
-  // Of a source: pictures that never entered the sequence because it was busy.
+  // Of a source: pictures that never entered the sequence because it was busy. Thread-safe.
   virtual uint64_t Dropped() const { return 0; }
 
   const std::vector<PortBase*>& inputs() const { return inputs_; }
@@ -48,13 +50,17 @@ class Block {
   PortBase* FindInput(std::string_view name) const;
   PortBase* FindOutput(std::string_view name) const;
 
-  // For whoever runs the block: set before Start(), and before each Run().
-  void Attach(const Environment* environment, std::function<void()> wake);
+  // For whoever runs the block: before Start(). `environment` must outlive the block's Stop().
+  void Attach(const Environment* environment, std::shared_ptr<const RunInfo> run,
+              std::function<void()> wake);
+  // For whoever runs the block: before each Run().
   void SetFrame(FrameContext* frame) { frame_ = frame; }
 
  protected:
   const Environment& environment() const { return *environment_; }
-  // The frame that Run() is working on. A source fills in the capture fields.
+  // The run that this block is part of, from Start() on.
+  const RunInfo& run() const { return *run_; }
+  // The frame that Run() is working on. Only a source writes it: the capture fields.
   FrameContext& frame() const { return *frame_; }
   // Memory for outputs, recycled from earlier frames: Image<uint16_t> out(pool(), width, height).
   BufferPool& pool() { return pool_; }
@@ -71,6 +77,7 @@ class Block {
   std::vector<PortBase*> outputs_;
   std::vector<ParamBase*> params_;
   const Environment* environment_ = nullptr;
+  std::shared_ptr<const RunInfo> run_;
   FrameContext* frame_ = nullptr;
   std::function<void()> wake_;
   BufferPool pool_;

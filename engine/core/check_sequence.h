@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "engine/base/status.h"
@@ -7,11 +8,14 @@
 
 namespace vs {
 
-// Every fault of the sequence at once, each with its block ("match"), parameter ("match.p1"), port
-// ("match.left") or "sequence": unknown types, duplicate or malformed ids, parameters unknown, of
-// the wrong type or out of range, connections to nowhere, between different types, twice into one
-// input, required inputs left open, cycles (naming the blocks on it), no source. Empty = it can be
-// loaded.
+inline constexpr size_t kMaxBlocks = 1000;
+inline constexpr size_t kMaxConnections = 10'000;
+
+// Every fault of the sequence at once, each with its block ("match", or "blocks[2]" when its id is
+// unusable), parameter ("match.p1"), port ("match.left") or "sequence": too many blocks, unknown
+// types, duplicate or malformed ids, parameters unknown, of the wrong type or out of range,
+// connections to nowhere, between different types, twice into one input, required inputs left open,
+// cycles (naming the blocks on it), no source. Empty = it can be loaded.
 std::vector<Fault> CheckSequence(const SequenceSpec& spec);
 
 }  // namespace vs

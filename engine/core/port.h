@@ -13,17 +13,24 @@ namespace vs {
 
 class Block;
 
-// Whether an input may stay unconnected. A block does not run for a frame in which a required
-// input got no value.
-enum class Need { kRequired, kOptional };
+// Whether an input may stay unconnected.
+enum class Need {
+  kRequired,  // connected; the block does not run for a frame in which it got no value
+  kOptional,  // may stay open; the block runs without it
+  kSome,      // as kOptional, but at least one of the block's inputs of this kind is connected
+};
 
 struct PortInfo {
   std::string name;
   std::string doc;        // a full sentence for the user
   std::string_view type;  // PortType<T>::kName
   bool output = false;
-  bool required = true;  // of an input
+  Need need = Need::kOptional;  // of an input
 };
+
+// Whether an output of type `from` may feed an input of type `to`: equal types, anything into
+// "any", and an integer into a number.
+bool PortTypesFit(std::string_view from, std::string_view to);
 
 // A port as the scheduler sees it: a place for one value while one frame is processed.
 class PortBase {
@@ -33,6 +40,11 @@ class PortBase {
   PortBase& operator=(const PortBase&) = delete;
 
   const PortInfo& info() const { return info_; }
+  // Of an input: the type of the output that feeds it; empty when it is not connected. Set while
+  // the sequence is loaded, so Start() can rely on it.
+  std::string_view source_type() const { return source_type_; }
+  bool connected() const { return !source_type_.empty(); }
+  void Connect(std::string_view source_type) { source_type_ = source_type; }
   void Bind(Value value) { value_ = std::move(value); }
   Value Release() { return std::exchange(value_, Value()); }
 
@@ -42,6 +54,7 @@ class PortBase {
 
  private:
   PortInfo info_;
+  std::string_view source_type_;
   Value value_;
 };
 
@@ -53,8 +66,7 @@ template <class T>
 class In final : public PortBase {
  public:
   In(Block* owner, std::string name, std::string doc, Need need = Need::kRequired)
-      : PortBase(owner, {std::move(name), std::move(doc), PortType<T>::kName, false,
-                         need == Need::kRequired}) {}
+      : PortBase(owner, {std::move(name), std::move(doc), PortType<T>::kName, false, need}) {}
 
   // Always true for a required input inside Run().
   bool has_value() const { return Get() != nullptr; }
@@ -86,7 +98,7 @@ template <class T>
 class Out final : public PortBase {
  public:
   Out(Block* owner, std::string name, std::string doc)
-      : PortBase(owner, {std::move(name), std::move(doc), PortType<T>::kName, true, false}) {}
+      : PortBase(owner, {std::move(name), std::move(doc), PortType<T>::kName, true}) {}
 
   // Publishes `result`; nobody may write it any more. Takes no heap memory once warm.
   void Set(T result) {

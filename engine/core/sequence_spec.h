@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <string_view>
@@ -43,12 +44,20 @@ struct SequenceSpec {
   bool operator==(const SequenceSpec&) const = default;
 };
 
-// Canonical JSON: keys sorted, blocks and connections in a fixed order, two spaces, numbers in
-// their shortest exact form. Equal sequences give equal text, so a diff shows what changed.
+// "stereo_depth": [a-z][a-z0-9_]*, at most 63 characters.
+bool IsSequenceId(std::string_view text);
+
+// Canonical JSON: keys sorted, blocks and connections sorted, two spaces, numbers in their shortest
+// exact form. Equal sequences give equal text, so a diff shows what changed. Numbers must be finite
+// (CheckSequence says whether they are).
 std::string ToJson(const SequenceSpec& spec);
 
-// Refuses malformed JSON (line and column), unknown keys and wrong types, naming the place.
-// Whether blocks exist and fit is CheckSequence's question.
+inline constexpr size_t kMaxSequenceBytes = 1 << 20;
+
+// The reverse; blocks and connections keep the order of the text. Only "id" and a block's "id" and
+// "type" are required. INVALID_ARGUMENT for malformed JSON (with line and column), text of more
+// than 1 MiB, unknown and duplicate keys and wrong types, each with its place
+// ("blocks[2].params.p1"). Whether blocks exist and fit is CheckSequence's question.
 Result<SequenceSpec> ParseSequence(std::string_view json);
 
 }  // namespace vs

@@ -1,6 +1,5 @@
 #include "engine/core/topic.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "engine/base/str.h"
@@ -16,20 +15,21 @@ struct Topic::Subscription {
   Listener listener VS_GUARDED_BY(mutex);
 };
 
-void Topic::Publish(Sample sample) {
+void Topic::Publish(Value value, const FrameContext& frame, int64_t published_ns) {
+  std::shared_ptr<const Sample> previous;  // freed after the lock
   std::shared_ptr<const Sample> published;
-  std::vector<std::shared_ptr<Subscription>> subscriptions;
+  std::shared_ptr<const Subscriptions> subscriptions;
   {
     MutexLock lock(mutex_);
-    sample.seq = next_seq_++;
-    published = std::make_shared<const Sample>(std::move(sample));
-    latest_ = published;
-    std::erase_if(subscriptions_, [](const auto& weak) { return weak.expired(); });
-    for (const auto& weak : subscriptions_) {
-      if (auto subscription = weak.lock()) subscriptions.push_back(std::move(subscription));
-    }
+    published = std::allocate_shared<Sample>(
+        samples_, Sample{next_seq_++, std::move(value), frame, published_ns});
+    previous = std::exchange(latest_, published);
+    subscriptions = subscriptions_;
   }
-  for (const auto& subscription : subscriptions) {
+  if (subscriptions == nullptr) return;
+  for (const auto& weak : *subscriptions) {
+    const auto subscription = weak.lock();
+    if (subscription == nullptr) continue;
     MutexLock lock(subscription->mutex);
     if (subscription->listener) subscription->listener(published);
   }
@@ -44,7 +44,14 @@ std::shared_ptr<void> Topic::Listen(Listener listener) {
   auto subscription = std::make_shared<Subscription>(std::move(listener));
   {
     MutexLock lock(mutex_);
-    subscriptions_.push_back(subscription);
+    auto all = std::make_shared<Subscriptions>();
+    if (subscriptions_ != nullptr) {
+      for (const auto& other : *subscriptions_) {
+        if (!other.expired()) all->push_back(other);
+      }
+    }
+    all->push_back(subscription);
+    subscriptions_ = std::move(all);
   }
   return std::shared_ptr<void>(subscription.get(), [subscription](void*) {
     MutexLock lock(subscription->mutex);
@@ -54,6 +61,7 @@ std::shared_ptr<void> Topic::Listen(Listener listener) {
 
 Result<std::shared_ptr<Topic>> TopicHub::Open(const std::string& name, const std::string& type) {
   MutexLock lock(mutex_);
+  std::erase_if(topics_, [](const auto& entry) { return entry.second.expired(); });
   std::weak_ptr<Topic>& entry = topics_[name];
   if (!entry.expired()) {
     return AlreadyExists(
