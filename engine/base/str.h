@@ -2,6 +2,7 @@
 
 #include <sstream>
 #include <string>
+#include <string_view>
 
 namespace vs {
 
@@ -12,5 +13,9 @@ std::string Str(const Parts&... parts) {
   (text << ... << parts);
   return text.str();
 }
+
+// Somebody else's text as part of a message: in double quotes, cut after 60 characters ("..."),
+// control characters and bytes that are not UTF-8 as \xNN. Always valid UTF-8.
+std::string Quoted(std::string_view text);
 
 }  // namespace vs
