@@ -48,8 +48,7 @@ struct TruthScore {
   double valid_bad2_percent = 0;  // of the valid ones, those off by more than 2 px
   double average_error_px = 0;    // mean |error| of the valid ones
   double mean_error_px = 0;       // mean signed error of the valid ones within 1 px
-  double depth_bias_percent = 0;  // mean of (depth / true depth - 1) over the same; 0 when the
-                                  // geometry is not known
+  double depth_bias_percent = 0;  // mean of (depth / true depth - 1) over the same
 };
 
 // INVALID_ARGUMENT when the truth has another size than the map.
