@@ -1,12 +1,16 @@
 #include "engine/core/param.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "engine/base/str.h"
 
 namespace vs {
 namespace {
+
+constexpr size_t kMaxTextBytes = 4096;
 
 std::string_view TypeName(const ParamValue& value) {
   static constexpr std::string_view kNames[] = {"true or false", "an integer", "a number",
@@ -14,11 +18,19 @@ std::string_view TypeName(const ParamValue& value) {
   return kNames[value.index()];
 }
 
+// The shortest text that means exactly this number.
+std::string NumberText(double number) {
+  char text[32];
+  return std::string(text, std::to_chars(text, text + sizeof text, number).ptr);
+}
+
 std::string RangeText(const ParamInfo& info) {
   const std::string unit = info.unit.empty() ? "" : " " + info.unit;
-  if (info.min && info.max) return Str(*info.min, " to ", *info.max, unit);
-  if (info.min) return Str("at least ", *info.min, unit);
-  return Str("at most ", *info.max, unit);
+  if (info.min && info.max) {
+    return Str(NumberText(*info.min), " to ", NumberText(*info.max), unit);
+  }
+  if (info.min) return Str("at least ", NumberText(*info.min), unit);
+  return Str("at most ", NumberText(*info.max), unit);
 }
 
 std::string Joined(const std::vector<std::string>& words) {
@@ -27,12 +39,50 @@ std::string Joined(const std::vector<std::string>& words) {
   return text;
 }
 
+std::string Shown(const ParamValue& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  return text != nullptr ? Quoted(*text) : ToString(value);
+}
+
+Status CheckNumber(const ParamInfo& info, const ParamValue& value) {
+  const auto* integer = std::get_if<int64_t>(&value);
+  const double number =
+      integer != nullptr ? static_cast<double>(*integer) : std::get<double>(value);
+  if (!std::isfinite(number)) return OutOfRange(Str(info.name, " must be a finite number"));
+  if ((info.min && number < *info.min) || (info.max && number > *info.max)) {
+    return OutOfRange(Str(info.name, " must be ", RangeText(info), ", not ", ToString(value)));
+  }
+  const bool holds_int = std::holds_alternative<int64_t>(info.initial);
+  if (holds_int && *integer != static_cast<int>(*integer)) {
+    return OutOfRange(Str(info.name, " must fit into 32 bits, ", ToString(value), " does not"));
+  }
+  return Status();
+}
+
+Status CheckText(const ParamInfo& info, const std::string& text) {
+  if (text.size() > kMaxTextBytes) {
+    return OutOfRange(
+        Str(info.name, " must have at most ", kMaxTextBytes, " bytes, not ", text.size()));
+  }
+  if (std::any_of(text.begin(), text.end(),
+                  [](char c) { return c >= 0 && c < ' ' && c != '\n'; })) {
+    return InvalidArgument(
+        Str(info.name, " must not contain control characters, as ", Quoted(text), " does"));
+  }
+  if (!info.choices.empty() &&
+      std::find(info.choices.begin(), info.choices.end(), text) == info.choices.end()) {
+    return OutOfRange(
+        Str(info.name, " must be one of ", Joined(info.choices), ", not ", Quoted(text)));
+  }
+  return Status();
+}
+
 }  // namespace
 
 std::string ToString(const ParamValue& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
   if (const auto* integer = std::get_if<int64_t>(&value)) return std::to_string(*integer);
-  if (const auto* number = std::get_if<double>(&value)) return Str(*number);
+  if (const auto* number = std::get_if<double>(&value)) return NumberText(*number);
   return std::get<std::string>(value);
 }
 
@@ -41,27 +91,11 @@ Status ParamBase::Check(const ParamValue& value) const {
       std::holds_alternative<double>(info_.initial) && std::holds_alternative<int64_t>(value);
   if (value.index() != info_.initial.index() && !integer_for_number) {
     return InvalidArgument(Str(info_.name, " must be ", TypeName(info_.initial), ", not ",
-                               TypeName(value), " (", ToString(value), ")"));
+                               TypeName(value), " (", Shown(value), ")"));
   }
-  if (info_.min || info_.max) {
-    const auto* integer = std::get_if<int64_t>(&value);
-    const double number =
-        integer != nullptr ? static_cast<double>(*integer) : std::get<double>(value);
-    if (!std::isfinite(number) || (info_.min && number < *info_.min) ||
-        (info_.max && number > *info_.max)) {
-      return OutOfRange(Str(info_.name, " must be ", RangeText(info_), ", not ", ToString(value)));
-    }
-  } else if (const auto* number = std::get_if<double>(&value); number && !std::isfinite(*number)) {
-    return OutOfRange(Str(info_.name, " must be a finite number"));
-  }
-  if (!info_.choices.empty()) {
-    const auto& text = std::get<std::string>(value);
-    if (std::find(info_.choices.begin(), info_.choices.end(), text) == info_.choices.end()) {
-      return OutOfRange(
-          Str(info_.name, " must be one of ", Joined(info_.choices), ", not \"", text, "\""));
-    }
-  }
-  return Status();
+  if (std::holds_alternative<bool>(value)) return Status();
+  if (const auto* text = std::get_if<std::string>(&value)) return CheckText(info_, *text);
+  return CheckNumber(info_, value);
 }
 
 Status ParamBase::Set(const ParamValue& value) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "engine/base/status.h"
@@ -68,10 +69,13 @@ class Sequence {
 
  private:
   Sequence() = default;
+  Status AddNode(const BlockSpec& spec);
+  void Connect(const Connection& connection);
 
   SequenceSpec spec_;
   uint64_t revision_ = 0;
   std::vector<Node> nodes_;
+  std::unordered_map<std::string, int> index_;  // of nodes_, by id
   std::vector<int> slot_readers_;
 };
 
