@@ -1,0 +1,49 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/base/mutex.h"
+#include "engine/base/status.h"
+#include "engine/camera/camera_source.h"
+#include "engine/camera/gvcp.h"
+
+namespace vs {
+
+class SharedCamera;
+
+// The open cameras of the whole server. One physical camera is opened once and shared: by the
+// sequences that use its pictures and by the camera API. Thread-safe.
+class CameraHub {
+ public:
+  struct Entry {
+    std::string uri;
+    CameraStats stats;
+  };
+
+  // The camera of this URI, opened when the first user needs it and closed when the last one lets
+  // go. Each user has its own Start and Stop; all see the same pictures. A URI without options also
+  // means a camera that is open with options. Errors: NOT_FOUND (no such driver), INVALID_ARGUMENT
+  // (bad options), FAILED_PRECONDITION (already open with other options). Recorded sources are not
+  // shared: each user reads the files from the start.
+  Result<std::shared_ptr<CameraSource>> Acquire(const CameraUri& uri);
+
+  // The cameras that somebody uses now.
+  std::vector<Entry> List() const;
+
+  // Asks all networks for cameras; takes as long as `timeout`.
+  Result<std::vector<FoundCamera>> Discover(std::chrono::milliseconds timeout) const;
+
+ private:
+  struct Open {
+    CameraUri uri;
+    std::weak_ptr<SharedCamera> camera;
+  };
+
+  mutable Mutex mutex_;
+  std::vector<Open> open_ VS_GUARDED_BY(mutex_);
+};
+
+}  // namespace vs

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <arv.h>
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "engine/base/status.h"
+#include "engine/camera/camera_uri.h"
+#include "engine/camera/feature_memory.h"
+#include "engine/camera/gev_features.h"
+#include "engine/camera/gev_glib.h"
+#include "engine/camera/gev_stream.h"
+
+namespace vs {
+
+// One connection to a camera, from taking control to giving it back. Used by the device thread
+// only; nearly every call talks to the camera and takes seconds when the camera is gone.
+class GevSession {
+ public:
+  // A moment on both clocks.
+  struct ClockSample {
+    int64_t device_ns = 0;
+    int64_t host_ns = 0;  // monotonic, at most one round trip late
+  };
+
+  // Takes control of the camera. FAILED_PRECONDITION when another program has it.
+  static Result<std::unique_ptr<GevSession>> Open(const std::string& address);
+  ~GevSession();
+  GevSession(const GevSession&) = delete;
+  GevSession& operator=(const GevSession&) = delete;
+
+  // A known state (continuous, free-running, 8-bit grey), then the URI's features, then those that
+  // were set since. What the URI sets is remembered, too, but not twice.
+  Status Configure(const CameraUri::Options& features, const FeatureMemory& memory);
+
+  // Packets of `packet_bytes`; 0 = as large as the network allows, at most 8192.
+  Status StartStream(const GevStreamOptions& options, int packet_bytes);
+  // With `answering` false, the camera is not asked to stop first.
+  void StopStream(bool answering);
+  GevStream* stream() { return stream_.get(); }
+  int packet_bytes() const { return packet_bytes_; }
+
+  GevFeatures& features() { return features_; }
+  // Pictures come only when something triggers them.
+  bool Triggered() const;
+  Status SoftwareTrigger();
+  double ExposureUs() const;  // 0 when unknown or automatic
+  // The size of a picture differs from what the open stream expects.
+  bool PayloadChanged() const;
+  // Reads both clocks; nullopt when the camera cannot latch its clock.
+  std::optional<ClockSample> SampleClock();
+
+  // The camera was taken by another program, or restarted.
+  bool control_lost() const { return control_lost_; }
+
+ private:
+  explicit GevSession(GObjectPtr<ArvDevice> device, std::string address);
+  Status SetPacketSize(int packet_bytes);
+  // Sets what exists and can be written now.
+  Status SetIfPossible(const std::string& name, const std::string& text);
+
+  std::atomic<bool> control_lost_ = false;
+  GObjectPtr<ArvDevice> device_;
+  const std::string address_;
+  GevFeatures features_;
+  int packet_bytes_ = 0;
+  uint64_t tick_hz_ = 0;
+  std::unique_ptr<GevStream> stream_;
+};
+
+}  // namespace vs
