@@ -1,6 +1,7 @@
 #include "engine/camera/camera_hub.h"
 
 #include <algorithm>
+#include <thread>
 #include <utility>
 
 #include "engine/base/str.h"
@@ -8,6 +9,53 @@
 #include "engine/camera/shared_camera.h"
 
 namespace vs {
+namespace {
+
+constexpr std::chrono::milliseconds kAskTime{150};
+
+}  // namespace
+
+class CameraHub::Closer {
+ public:
+  Closer() : thread_([this] { Run(); }) {}
+  // Waits until all are closed.
+  ~Closer() {
+    {
+      MutexLock lock(mutex_);
+      quit_ = true;
+      changed_.NotifyAll();
+    }
+    thread_.join();
+  }
+  Closer(const Closer&) = delete;
+  Closer& operator=(const Closer&) = delete;
+
+  void Close(std::unique_ptr<SharedCamera> camera) {
+    MutexLock lock(mutex_);
+    cameras_.push_back(std::move(camera));
+    changed_.NotifyAll();
+  }
+
+ private:
+  void Run() {
+    while (true) {
+      std::vector<std::unique_ptr<SharedCamera>> closing;  // destroyed after the lock is gone
+      MutexLock lock(mutex_);
+      while (cameras_.empty() && !quit_) changed_.Wait(mutex_);
+      if (cameras_.empty()) return;
+      closing.swap(cameras_);
+    }
+  }
+
+  Mutex mutex_;
+  CondVar changed_;
+  std::vector<std::unique_ptr<SharedCamera>> cameras_ VS_GUARDED_BY(mutex_);
+  bool quit_ VS_GUARDED_BY(mutex_) = false;
+  std::thread thread_;
+};
+
+CameraHub::CameraHub() : closer_(std::make_shared<Closer>()) {}
+CameraHub::~CameraHub() = default;
 
 Result<std::shared_ptr<CameraSource>> CameraHub::Acquire(const CameraUri& uri) {
   MutexLock lock(mutex_);
@@ -31,7 +79,12 @@ Result<std::shared_ptr<CameraSource>> CameraHub::Acquire(const CameraUri& uri) {
   }
   VS_ASSIGN_OR_RETURN(std::unique_ptr<CameraSource> camera, CameraDrivers::Get().Make(uri));
   if (camera->Recorded()) return std::shared_ptr<CameraSource>(std::move(camera));
-  auto shared = std::make_shared<SharedCamera>(std::move(camera));
+  const std::shared_ptr<SharedCamera> shared(
+      new SharedCamera(std::move(camera)),
+      [weak_closer = std::weak_ptr(closer_)](SharedCamera* unused) {
+        std::unique_ptr<SharedCamera> closing(unused);
+        if (const auto closer = weak_closer.lock()) closer->Close(std::move(closing));
+      });
   open_.push_back({uri, shared});
   return shared->MakeHandle();
 }
@@ -45,13 +98,19 @@ std::vector<CameraHub::Entry> CameraHub::List() const {
     }
   }
   std::vector<Entry> entries;
-  for (const auto& [uri, camera] : open)
+  for (const auto& [uri, camera] : open) {
     entries.push_back({uri.ToString(), camera->camera().Stats()});
+  }
   return entries;
 }
 
 Result<std::vector<FoundCamera>> CameraHub::Discover(std::chrono::milliseconds timeout) const {
-  return DiscoverGevCameras(timeout);
+  VS_ASSIGN_OR_RETURN(std::vector<FoundCamera> cameras, DiscoverGevCameras(timeout));
+  for (FoundCamera& camera : cameras) {
+    const auto privilege = ReadGevRegister(camera.address, kGevControlPrivilege, kAskTime);
+    camera.in_use = privilege && *privilege != 0;
+  }
+  return cameras;
 }
 
 }  // namespace vs

@@ -23,6 +23,9 @@ class CameraHub {
     CameraStats stats;
   };
 
+  CameraHub();
+  ~CameraHub();
+
   // The camera of this URI, opened when the first user needs it and closed when the last one lets
   // go. Each user has its own Start and Stop; all see the same pictures. A URI without options also
   // means a camera that is open with options. Errors: NOT_FOUND (no such driver), INVALID_ARGUMENT
@@ -37,11 +40,14 @@ class CameraHub {
   Result<std::vector<FoundCamera>> Discover(std::chrono::milliseconds timeout) const;
 
  private:
+  class Closer;
   struct Open {
     CameraUri uri;
     std::weak_ptr<SharedCamera> camera;
   };
 
+  // Cameras are closed on its thread: one that does not answer takes seconds.
+  const std::shared_ptr<Closer> closer_;
   mutable Mutex mutex_;
   std::vector<Open> open_ VS_GUARDED_BY(mutex_);
 };
