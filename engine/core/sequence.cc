@@ -122,7 +122,9 @@ void Sequence::Connect(const Connection& connection) {
   const int slot = nodes_[from].first_output_slot + static_cast<int>(place);
   input->Connect(output->info().type);
   ++slot_readers_[slot];
-  nodes_[to].inputs.push_back({input, slot});
+  nodes_[to].inputs.push_back({input, slot,
+                               output->info().type == PortType<int64_t>::kName &&
+                                   input->info().type == PortType<double>::kName});
   nodes_[to].upstream.push_back(from);
   nodes_[from].downstream.push_back(to);
 }

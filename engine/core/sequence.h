@@ -36,6 +36,7 @@ class Sequence {
   struct Input {
     PortBase* port;
     int slot;
+    bool integer_to_number;
   };
   struct Node {
     std::string id;
