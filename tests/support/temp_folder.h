@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace vs {
+namespace vs::test {
 
 // A new, empty folder that goes with its contents when the test ends.
 class TempFolder {
@@ -27,4 +27,4 @@ class TempFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace vs
+}  // namespace vs::test

@@ -26,7 +26,7 @@ class SqliteTest : public ::testing::Test {
     return std::string(std::istreambuf_iterator<char>(in), {});
   }
 
-  TempFolder folder_;
+  test::TempFolder folder_;
   const std::filesystem::path file_ = folder_ / "store.db";
 };
 
