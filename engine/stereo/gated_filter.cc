@@ -24,14 +24,14 @@ constexpr int kLanes = 64;
 using Lanes = uint16_t[kLanes];
 
 // Members keep their disparity, the others become kAbsent.
-void Gather(const uint16_t* disparity, const uint16_t* grey, const uint16_t* centre, uint16_t gate,
+void Gather(const uint16_t* disparity, const uint16_t* grey, const uint16_t* centre, int gate,
             Lanes& __restrict members, Lanes& __restrict count) {
   for (int k = 0; k < kLanes; ++k) {
-    const auto step =
-        static_cast<uint16_t>(grey[k] > centre[k] ? grey[k] - centre[k] : centre[k] - grey[k]);
-    const bool member = disparity[k] != kInvalidDisparity && step <= gate;
-    members[k] = member ? disparity[k] : kAbsent;
-    count[k] = static_cast<uint16_t>(count[k] + (member ? 1 : 0));
+    const int step = grey[k] - centre[k];
+    const uint16_t absent =
+        (disparity[k] == kInvalidDisparity) | (step > gate) | (step < -gate) ? kAbsent : 0;
+    members[k] = static_cast<uint16_t>(disparity[k] | absent);
+    count[k] = static_cast<uint16_t>(count[k] + 1 + absent);  // kAbsent + 1 = 0
   }
 }
 
@@ -90,7 +90,7 @@ class WidenedRows {
   uint16_t* grey_;
 };
 
-void MedianRow(const WidenedRows& rows, int width, uint16_t gate, uint16_t* out) {
+void MedianRow(const WidenedRows& rows, int width, int gate, uint16_t* out) {
   Lanes members[kMedianCount];
   Lanes median;
   for (int x = 0; x < width; x += kLanes) {
@@ -146,7 +146,7 @@ void GatedFilterRows(const DisparityMap& in, const GreyImage& left,
     std::copy_n(in.reason.Row(y), width, out->reason.Row(y));
     if (options.median) {
       rows.Load(in, left, y);
-      MedianRow(rows, width, static_cast<uint16_t>(options.gate), disparity);
+      MedianRow(rows, width, options.gate, disparity);
     }
     if (!options.fill) continue;
     for (int x = 0; x < width; ++x) {

@@ -16,8 +16,8 @@ void Order(Lanes& __restrict low, Lanes& __restrict high) {
   for (int k = 0; k < kLanes; ++k) {
     const uint16_t a = low[k];
     const uint16_t b = high[k];
-    low[k] = std::min(a, b);
-    high[k] = std::max(a, b);
+    low[k] = a < b ? a : b;
+    high[k] = a < b ? b : a;
   }
 }
 
@@ -41,29 +41,26 @@ const Lanes& MedianOf(Lanes (&values)[kCount]) {
   return values[first];
 }
 
-void ApplyMedian(const DisparityMap& in, int y, int x, uint16_t median, bool fill,
-                 DisparityMap* out) {
-  const uint16_t before = in.disparity.Row(y)[x];
-  const bool was_valid = before != kInvalidDisparity;
-  const bool keep = !was_valid && (median == kInvalidDisparity || !fill);
-  out->disparity.Row(y)[x] = keep ? kInvalidDisparity : median;
-  uint8_t& confidence = out->confidence.Row(y)[x];
-  uint8_t& reason = out->reason.Row(y)[x];
-  if (keep) {
-    confidence = 0;
-    reason = in.reason.Row(y)[x];
-  } else if (median == kInvalidDisparity) {
+void ApplyMedian(const DisparityMap& in, int y, int x, uint16_t median, DisparityMap* out) {
+  const bool was_valid = in.disparity.Row(y)[x] != kInvalidDisparity;
+  const bool is_valid = median != kInvalidDisparity;
+  uint8_t confidence = in.confidence.Row(y)[x];
+  uint8_t reason = in.reason.Row(y)[x];
+  if (is_valid && !was_valid) {
+    confidence = kFilledConfidence;
+    reason = static_cast<uint8_t>(InvalidReason::kNone);
+  } else if (was_valid && !is_valid) {
     confidence = 0;
     reason = static_cast<uint8_t>(InvalidReason::kFiltered);
-  } else {
-    confidence = was_valid ? in.confidence.Row(y)[x] : kFilledConfidence;
-    reason = static_cast<uint8_t>(InvalidReason::kNone);
   }
+  out->disparity.Row(y)[x] = median;
+  out->confidence.Row(y)[x] = confidence;
+  out->reason.Row(y)[x] = reason;
 }
 
 template <int kSize>
-void FilterRows(const DisparityMap& in, bool fill, int begin, int end,
-                std::vector<uint16_t>* scratch, DisparityMap* out) {
+void FilterRows(const DisparityMap& in, int begin, int end, std::vector<uint16_t>* scratch,
+                DisparityMap* out) {
   constexpr int kRadius = kSize / 2;
   const int width = in.disparity.width();
   const int height = in.disparity.height();
@@ -86,19 +83,19 @@ void FilterRows(const DisparityMap& in, bool fill, int begin, int end,
       }
       const Lanes& medians = MedianOf(values);
       const int count = std::min(kLanes, width - x);
-      for (int k = 0; k < count; ++k) ApplyMedian(in, y, x + k, medians[k], fill, out);
+      for (int k = 0; k < count; ++k) ApplyMedian(in, y, x + k, medians[k], out);
     }
   }
 }
 
 }  // namespace
 
-void MedianFilterRows(const DisparityMap& in, int size, bool fill, int begin, int end,
+void MedianFilterRows(const DisparityMap& in, int size, int begin, int end,
                       std::vector<uint16_t>* scratch, DisparityMap* out) {
   if (size == 5) {
-    FilterRows<5>(in, fill, begin, end, scratch, out);
+    FilterRows<5>(in, begin, end, scratch, out);
   } else {
-    FilterRows<3>(in, fill, begin, end, scratch, out);
+    FilterRows<3>(in, begin, end, scratch, out);
   }
 }
 

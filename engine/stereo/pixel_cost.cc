@@ -88,11 +88,11 @@ int OutsideCost(const SgmSettings& settings) {
   switch (settings.cost) {
     case MatchCost::kCensus:
     case MatchCost::kAdCensus: {
-      const int census = settings.census == CensusPattern::k9x7 ? 8 : 7;
+      const int census = settings.census == CensusPattern::k9x7 ? 9 : 7;
       return census + (settings.cost == MatchCost::kAdCensus ? (settings.ad_limit + 1) / 2 : 0);
     }
     default:
-      return (settings.grey_limit + 5) / 6;
+      return (settings.grey_limit + 4) / 10;
   }
 }
 

@@ -128,8 +128,7 @@ class ReferenceMatcher final : public StereoMatcher {
     DisparityMap other = MakeMap(width, height, map->offset_px, pool);
     if (settings.median > 0) {
       ForRows(height, [&](Worker& worker, int begin, int end) {
-        MedianFilterRows(*map, settings.median, settings.fill_holes, begin, end, &worker.filter,
-                         &other);
+        MedianFilterRows(*map, settings.median, begin, end, &worker.filter, &other);
       });
       std::swap(*map, other);
     }

@@ -48,9 +48,11 @@ InvalidReason Explain(InvalidReason reason, const GreyImage& left, int x, int y)
 void OfferToRight(const uint8_t* __restrict sums, const uint8_t* __restrict indices, int count,
                   uint8_t* __restrict least, uint8_t* __restrict index) {
   for (int i = 0; i < count; ++i) {
-    const bool better = sums[i] < least[i];
-    index[i] = better ? indices[i] : index[i];
-    least[i] = better ? sums[i] : least[i];
+    const uint8_t sum = sums[i];
+    const uint8_t before = least[i];
+    const uint8_t better = sum < before ? 0xff : 0;  // a mask, so that this vectorises
+    index[i] = static_cast<uint8_t>((indices[i] & better) | (index[i] & ~better));
+    least[i] = sum < before ? sum : before;
   }
 }
 

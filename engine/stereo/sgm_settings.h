@@ -79,7 +79,7 @@ struct SgmSettings {
   bool left_right_lenient = true;  // the neighbour left of the counterpart may agree instead
 
   // Filters, in this order (median_filter.h, speckle_filter.h, gated_filter.h, background_fill.h).
-  int median = 3;                // px, 0 (off), 3 or 5
+  int median = 3;                // px, 0 (off), 3 or 5; closes 1-px holes
   int speckle_size = 60;         // px, 0 (off)..65535: regions up to this size are removed
   int speckle_step = 2;          // px, 1..16: neighbours that differ more belong to two regions
   bool gated_median = true;      // 5 x 5 median over the pixels of similar grey
