@@ -1,32 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <string_view>
 
 #include "engine/base/status.h"
 #include "engine/image/stereo_rig.h"
 
 namespace vs {
 
-// A stereo rig as a JSON file that people can read and compare. Canonical: the same rig gives the
-// same bytes (keys sorted, numbers in the shortest form that reads back exactly).
-//
-//   { "format": "visionserver.stereo_rig", "version": 1, "name": "cell 3",
-//     "left":  {"width": 1296, "height": 966, "fx_px": ..., "fy_px": ..., "cx_px": ..., "cy_px":
-//     ...,
-//               "k1": ..., "k2": ..., "p1": ..., "p2": ..., "k3": ...},
-//     "right": {...},
-//     "right_from_left": {"rotation": [9 numbers, row by row], "translation_m": [x, y, z]} }
-//
-// A key that is missing, unknown or there twice is an error: a misspelt one must not pass silently.
-
-std::string FormatRig(const StereoRig& rig);
-// INVALID_ARGUMENT with one fault for each wrong field ("left.fx_px"); for text that is no JSON at
-// all, with line and column. The rig is validated.
-Result<StereoRig> ParseRig(std::string_view text);
-
-// NOT_FOUND, PERMISSION_DENIED, or as ParseRig; the message begins with the path.
+// NOT_FOUND, PERMISSION_DENIED, or as ParseRig (rig_json.h); the message begins with the path.
 Result<StereoRig> LoadRig(const std::filesystem::path& path);
 // Replaces the file in one step: after a crash there is the old file or the new one, whole. An
 // invalid rig is not written.

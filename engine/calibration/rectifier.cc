@@ -1,0 +1,163 @@
+#include "engine/calibration/rectifier.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "engine/base/recycler.h"
+#include "engine/base/str.h"
+#include "engine/calibration/validate_rig.h"
+#include "engine/image/opencv_view.h"
+
+namespace vs {
+namespace {
+
+// The camera matrix for pictures of another size with the same field of view. Pixel centres are
+// integers, hence the half pixels.
+cv::Matx33d CameraMatrix(const CameraModel& camera, int width, int height) {
+  const double sx = static_cast<double>(width) / camera.width;
+  const double sy = static_cast<double>(height) / camera.height;
+  return {camera.fx_px * sx,
+          0,
+          (camera.cx_px + 0.5) * sx - 0.5,
+          0,
+          camera.fy_px * sy,
+          (camera.cy_px + 0.5) * sy - 0.5,
+          0,
+          0,
+          1};
+}
+
+cv::Vec<double, 5> Distortion(const CameraModel& camera) {
+  return {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
+}
+
+int CvInterpolation(Interpolation interpolation) {
+  switch (interpolation) {
+    case Interpolation::kNearest:
+      return cv::INTER_NEAREST;
+    case Interpolation::kCubic:
+      return cv::INTER_CUBIC;
+    default:
+      return cv::INTER_LINEAR;
+  }
+}
+
+Status CheckSize(const StereoRig& rig, int width, int height) {
+  const CameraModel& camera = rig.left;
+  if (rig.right.width != camera.width || rig.right.height != camera.height) {
+    return InvalidArgument(Str("stereo rig \"", rig.name, "\": the left camera has ", camera.width,
+                               " x ", camera.height, " px, the right one ", rig.right.width, " x ",
+                               rig.right.height, " px; only equal cameras can be rectified"));
+  }
+  // Binning drops an incomplete last row or column, so a pixel more or less is the same view.
+  const double scale = static_cast<double>(width) / camera.width;
+  const bool same_view = width >= 16 && height >= 16 && width <= 16384 && height <= 16384 &&
+                         std::abs(height - camera.height * scale) <= 1 + scale;
+  if (same_view) return {};
+  return InvalidArgument(Str("stereo rig \"", rig.name, "\" is calibrated for ", camera.width,
+                             " x ", camera.height, " px, the pictures have ", width, " x ", height,
+                             " px; use the full picture, binned if needed, or calibrate again"));
+}
+
+}  // namespace
+
+struct Rectifier::Maps {
+  RectifiedGeometry geometry;
+  std::array<double, 9> rectified_from_left_rotation{};
+  int interpolation = cv::INTER_LINEAR;
+  // Where each rectified pixel comes from: whole pixels, and fractions in 1/32.
+  struct View {
+    cv::Mat pixels;
+    cv::Mat fractions;
+  };
+  View left;
+  View right;
+  Recycler<Frame> frames;
+};
+
+Rectifier::Rectifier(std::shared_ptr<const Maps> maps) : maps_(std::move(maps)) {}
+
+Result<Rectifier> Rectifier::Make(const StereoRig& rig, int width, int height,
+                                  const RectifyOptions& options) {
+  VS_RETURN_IF_ERROR(ValidateRig(rig));
+  VS_RETURN_IF_ERROR(CheckSize(rig, width, height));
+  if (!(options.alpha >= 0 && options.alpha <= 1)) {
+    return InvalidArgument(Str("rectification: alpha is ", options.alpha, "; it must be 0 .. 1"));
+  }
+  const cv::Size size(width, height);
+  const cv::Matx33d left_camera = CameraMatrix(rig.left, width, height);
+  const cv::Matx33d right_camera = CameraMatrix(rig.right, width, height);
+  const cv::Matx33d rotation(rig.right_from_left_rotation.data());
+  const cv::Vec3d translation(rig.right_from_left_translation_m.data());
+  auto maps = std::make_shared<Maps>();
+  try {
+    cv::Matx33d left_rotation;
+    cv::Matx33d right_rotation;
+    cv::Matx34d left_projection;
+    cv::Matx34d right_projection;
+    cv::Matx44d unused;
+    cv::stereoRectify(left_camera, Distortion(rig.left), right_camera, Distortion(rig.right), size,
+                      rotation, translation, left_rotation, right_rotation, left_projection,
+                      right_projection, unused, cv::CALIB_ZERO_DISPARITY, options.alpha, size);
+    cv::initUndistortRectifyMap(left_camera, Distortion(rig.left), left_rotation, left_projection,
+                                size, CV_16SC2, maps->left.pixels, maps->left.fractions);
+    cv::initUndistortRectifyMap(right_camera, Distortion(rig.right), right_rotation,
+                                right_projection, size, CV_16SC2, maps->right.pixels,
+                                maps->right.fractions);
+    std::copy_n(left_rotation.val, 9, maps->rectified_from_left_rotation.begin());
+    const double focal = left_projection(0, 0);
+    maps->geometry = {.width = width,
+                      .height = height,
+                      .focal_px = focal,
+                      .baseline_m = -right_projection(0, 3) / focal,
+                      .cx_px = left_projection(0, 2),
+                      .cy_px = left_projection(1, 2),
+                      .principal_offset_px = right_projection(0, 2) - left_projection(0, 2)};
+  } catch (const cv::Exception& error) {
+    return InvalidArgument(
+        Str("stereo rig \"", rig.name, "\" cannot be rectified: ", error.what()));
+  }
+  maps->interpolation = CvInterpolation(options.interpolation);
+  const RectifiedGeometry& g = maps->geometry;
+  if (!(std::isfinite(g.focal_px) && g.focal_px > 0 && g.baseline_m > 0)) {
+    return InvalidArgument(Str("stereo rig \"", rig.name,
+                               "\" cannot be rectified: its distortion leaves no common view"));
+  }
+  return Rectifier(std::move(maps));
+}
+
+Result<StereoFrame> Rectifier::Rectify(const StereoFrame& raw, BufferPool& pool) const {
+  const auto rectify = [&](const FramePtr& frame, const Maps::View& view) -> Result<FramePtr> {
+    if (frame == nullptr) return InvalidArgument("rectification: a picture of the pair is missing");
+    const GreyImage& image = frame->image;
+    if (image.width() != maps_->geometry.width || image.height() != maps_->geometry.height) {
+      return InvalidArgument(Str("rectification: camera ", frame->camera, " gave ", image.width(),
+                                 " x ", image.height(), " px, expected ", maps_->geometry.width,
+                                 " x ", maps_->geometry.height,
+                                 " px; set both cameras to the same size"));
+    }
+    Frame rectified = *frame;
+    rectified.image = GreyImage(pool, image.width(), image.height());
+    cv::remap(CvView(image), CvView(rectified.image), view.pixels, view.fractions,
+              maps_->interpolation, cv::BORDER_CONSTANT, cv::Scalar(0));
+    return FramePtr(std::allocate_shared<Frame>(maps_->frames, std::move(rectified)));
+  };
+  StereoFrame pair = raw;
+  VS_ASSIGN_OR_RETURN(pair.left, rectify(raw.left, maps_->left));
+  VS_ASSIGN_OR_RETURN(pair.right, rectify(raw.right, maps_->right));
+  pair.geometry = maps_->geometry;
+  pair.truth = nullptr;
+  return pair;
+}
+
+const RectifiedGeometry& Rectifier::geometry() const { return maps_->geometry; }
+
+const std::array<double, 9>& Rectifier::rectified_from_left_rotation() const {
+  return maps_->rectified_from_left_rotation;
+}
+
+}  // namespace vs
