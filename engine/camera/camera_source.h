@@ -80,7 +80,7 @@ class CameraSource {
   // (yet, or any more) is not an error: the driver keeps trying and says so in Stats. Errors: the
   // URI's options make no sense.
   virtual Status Start(FrameSink sink) = 0;
-  // After it returns the sink is not called any more.
+  // After it returns the sink is not called any more. A sink that waits must be let go first.
   virtual void Stop() = 0;
   // Takes one picture now; FAILED_PRECONDITION unless the camera is set to software trigger.
   virtual Status Trigger() = 0;
