@@ -28,7 +28,19 @@ std::string_view StatusCodeName(StatusCode code) {
 
 Status Status::Annotated(std::string_view context) const {
   if (ok()) return *this;
-  return Status(code_, std::string(context) + ": " + message_, faults_);
+  Status annotated = *this;
+  annotated.message_ = std::string(context) + ": " + message_;
+  return annotated;
+}
+
+std::string_view Status::reason() const {
+  return reason_.empty() ? StatusCodeName(code_) : std::string_view(reason_);
+}
+
+Status Status::WithReason(std::string_view reason) const {
+  Status precise = *this;
+  precise.reason_ = reason;
+  return precise;
 }
 
 std::string Status::ToString() const {

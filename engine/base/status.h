@@ -57,7 +57,11 @@ class [[nodiscard]] Status {
   const std::string& message() const { return message_; }
   // All faults that were found at once; empty for a single error.
   const std::vector<Fault>& faults() const { return faults_; }
+  // A stable upper-case word that a program can act on, such as "PASSWORD_CHANGE_REQUIRED": the
+  // name of the code unless WithReason gave a more precise one.
+  std::string_view reason() const;
 
+  Status WithReason(std::string_view reason) const;
   // The same status with "context: " put before its message.
   Status Annotated(std::string_view context) const;
   // "INVALID_ARGUMENT: message" and one indented line for each fault.
@@ -75,6 +79,7 @@ class [[nodiscard]] Status {
   StatusCode code_ = StatusCode::kOk;
   std::string message_;
   std::vector<Fault> faults_;
+  std::string reason_;
 };
 
 // A value, or the Status that says why there is none.

@@ -36,5 +36,11 @@ TEST(Status, TextNamesTheCodeAndEveryFault) {
             "  depth.rig: missing");
 }
 
+TEST(Status, ReasonIsTheNameOfTheCodeUnlessSaidMorePrecisely) {
+  EXPECT_EQ(NotFound("no camera").reason(), "NOT_FOUND");
+  EXPECT_EQ(Unavailable("no camera").WithReason("CAMERA_OFFLINE").Annotated("left").reason(),
+            "CAMERA_OFFLINE");
+}
+
 }  // namespace
 }  // namespace vs

@@ -1,0 +1,129 @@
+// visionserver: starts a server from its configuration file and runs it until SIGTERM.
+
+#include <malloc.h>
+#include <pthread.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/base/log.h"
+#include "engine/base/str.h"
+#include "server/server.h"
+#include "server/version.h"
+
+namespace vs {
+namespace {
+
+constexpr int kExitFailure = 1;
+constexpr int kExitBadConfig = 2;
+
+// A frame is larger than what malloc takes from its heap at first: each one would be mapped and
+// page by page touched anew, which costs more than all the rest of sending it.
+void KeepFreedMemory() {
+  mallopt(M_MMAP_THRESHOLD, 64 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+}
+
+// Each connection and camera needs a file.
+void RaiseFileLimit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+LogLevel ToLogLevel(config::ServerConfig::LogLevel level) {
+  switch (level) {
+    case config::ServerConfig::DEBUG:
+      return LogLevel::kDebug;
+    case config::ServerConfig::INFO:
+      return LogLevel::kInfo;
+    case config::ServerConfig::WARN:
+      return LogLevel::kWarn;
+    case config::ServerConfig::ERROR:
+      return LogLevel::kError;
+  }
+  return LogLevel::kInfo;
+}
+
+// For people and for the scripts that start a server: on standard output, once.
+void Greet(const Server& server) {
+  std::printf("VisionServer %s listens on %s%s\n", kVersion, server.address().c_str(),
+              server.fingerprint().empty() ? " (plain text)" : "");
+  if (!server.fingerprint().empty()) {
+    std::printf("certificate fingerprint (SHA-256): %s\n", server.fingerprint().c_str());
+  }
+  if (server.one_time_password()) {
+    std::printf("one-time password of the user admin, valid for 24 hours: %s\n",
+                server.one_time_password()->c_str());
+  }
+  std::fflush(stdout);
+}
+
+int Fail(const Status& status, int exit_code) {
+  std::fprintf(stderr, "visionserver: %s\n", status.ToString().c_str());
+  return exit_code;
+}
+
+int Run(int argument_count, char** arguments) {
+  CLI::App app("VisionServer: networked 3D machine vision", "visionserver");
+  std::string config_file;
+  bool check_config = false;
+  bool rescue_admin = false;
+  app.add_option("--config", config_file, "The configuration file")->required();
+  app.add_flag("--check-config", check_config,
+               "Only check the configuration and print it with all defaults");
+  app.add_flag("--rescue-admin", rescue_admin,
+               "Give the user admin a new one-time password and print it");
+  app.set_version_flag("--version", kVersion);
+  CLI11_PARSE(app, argument_count, arguments);
+
+  const Result<config::ServerConfig> config = LoadConfig(config_file);
+  if (!config) return Fail(config.error(), kExitBadConfig);
+  if (check_config) {
+    std::fputs(Describe(*config).c_str(), stdout);
+    return EXIT_SUCCESS;
+  }
+  SetLogLevel(ToLogLevel(config->log_level()));
+
+  // Before there are other threads, so that they all inherit it: the signals are waited for here.
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  KeepFreedMemory();
+  RaiseFileLimit();
+
+  Result<std::unique_ptr<Server>> server =
+      Server::Start({.config = *config, .rescue_admin = rescue_admin});
+  if (!server) return Fail(server.error(), kExitFailure);
+  Greet(**server);
+
+  int signal = 0;
+  sigwait(&signals, &signal);
+  LogInfo("server", "shutting down; once more to do so at once");
+  // Whoever asks twice does not want to wait.
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+  (*server)->Drain();
+  return EXIT_SUCCESS;
+}
+
+}  // namespace
+}  // namespace vs
+
+int main(int argument_count, char** arguments) {
+  try {
+    return vs::Run(argument_count, arguments);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "visionserver: %s\n", error.what());
+    return vs::kExitFailure;
+  }
+}

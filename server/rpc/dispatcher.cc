@@ -1,0 +1,134 @@
+#include "server/rpc/dispatcher.h"
+
+#include <limits>
+#include <utility>
+
+#include "engine/base/str.h"
+
+namespace vs {
+
+Dispatcher::Dispatcher(const Router& router, Gatekeeper& gatekeeper,
+                       const DispatcherOptions& options)
+    : router_(router),
+      gatekeeper_(gatekeeper),
+      options_(options),
+      quick_(options.quick_threads, options.quick_queue),
+      slow_(options.slow_threads, options.slow_queue),
+      password_(1, options.password_queue),
+      // Each open stream queues at most twice, and their number is bounded.
+      stream_(options.stream_threads, std::numeric_limits<size_t>::max()) {
+  for (const auto& [name, method] : router.methods()) counters_[name];
+  timer_.At(0, [this] { InspectStreams(); });
+}
+
+Dispatcher::~Dispatcher() {
+  // Their tasks may still post to each other, so all of them stop before any of them goes.
+  for (Executor* executor : {&quick_, &slow_, &password_, &stream_}) executor->Stop();
+}
+
+std::shared_ptr<ServerCall> Dispatcher::Begin(const std::string& method,
+                                              std::string_view credential, std::string address,
+                                              Channel& channel) {
+  const Method* found = router_.Find(method);
+  const Result<Caller> caller = gatekeeper_.Admit(method, credential);
+  Call call{.method = method, .address = std::move(address)};
+  if (caller) call.caller = *caller;
+  auto server_call = std::make_shared<ServerCall>(*this, found, std::move(call), channel);
+  if (!caller) {
+    server_call->Refuse(caller.error());
+  } else if (found == nullptr) {
+    server_call->Refuse(Unimplemented(Str("there is no method ", method)));
+  } else if (draining_) {
+    server_call->Refuse(Unavailable("the server is shutting down"));
+  } else {
+    server_call->Begin();
+  }
+  return server_call;
+}
+
+void Dispatcher::Drain() {
+  draining_ = true;
+  for (const auto& stream : Streams()) stream->End(Unavailable("the server is shutting down"));
+}
+
+bool Dispatcher::Idle() const { return calls_ == 0; }
+
+size_t Dispatcher::OpenStreams() const {
+  MutexLock lock(mutex_);
+  return streams_.size();
+}
+
+std::vector<MethodStats> Dispatcher::Statistics() const {
+  std::vector<MethodStats> all;
+  for (const auto& [name, counters] : counters_) {
+    MethodStats stats{.method = name, .succeeded = counters.succeeded, .failed = counters.failed};
+    if (stats.succeeded + stats.failed == 0) continue;
+    if (const uint64_t timed = counters.timed; timed > 0) {
+      stats.mean_us = static_cast<double>(counters.total_ns) / static_cast<double>(timed) * 1e-3;
+      stats.max_us = static_cast<double>(counters.max_ns) * 1e-3;
+    }
+    all.push_back(std::move(stats));
+  }
+  return all;
+}
+
+Executor& Dispatcher::executor(Lane lane) {
+  switch (lane) {
+    case Lane::kSlow:
+      return slow_;
+    case Lane::kPassword:
+      return password_;
+    case Lane::kInline:
+    case Lane::kQuick:
+      break;
+  }
+  return quick_;
+}
+
+bool Dispatcher::AddStream(const std::shared_ptr<ServerCall>& call) {
+  MutexLock lock(mutex_);
+  if (streams_.size() >= options_.max_open_streams) return false;
+  streams_.emplace(call.get(), call);
+  return true;
+}
+
+void Dispatcher::Finished(const ServerCall& call, const Status& status, bool streaming,
+                          int64_t took_ns) {
+  {
+    MutexLock lock(mutex_);
+    streams_.erase(&call);
+  }
+  const auto found = counters_.find(call.call().method);
+  if (found == counters_.end()) return;
+  Counters& counters = found->second;
+  // Whoever has seen enough of a stream just leaves.
+  const bool left = streaming && status.code() == StatusCode::kCancelled;
+  ++(status.ok() || left ? counters.succeeded : counters.failed);
+  if (streaming || took_ns == 0) return;
+  ++counters.timed;
+  counters.total_ns += took_ns;
+  int64_t max_ns = counters.max_ns;
+  while (max_ns < took_ns && !counters.max_ns.compare_exchange_weak(max_ns, took_ns)) {
+  }
+}
+
+std::vector<std::shared_ptr<ServerCall>> Dispatcher::Streams() const {
+  std::vector<std::shared_ptr<ServerCall>> all;
+  MutexLock lock(mutex_);
+  for (const auto& [key, stream] : streams_) {
+    if (auto open = stream.lock()) all.push_back(std::move(open));
+  }
+  return all;
+}
+
+void Dispatcher::InspectStreams() {
+  const int64_t now_ns = clock_.MonotonicNs();
+  for (const auto& stream : Streams()) {
+    stream->Inspect(now_ns);
+    // What was opened while the drain began.
+    if (draining_) stream->End(Unavailable("the server is shutting down"));
+  }
+  timer_.At(now_ns + options_.inspection_period_ns, [this] { InspectStreams(); });
+}
+
+}  // namespace vs

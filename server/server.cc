@@ -1,0 +1,161 @@
+#include "server/server.h"
+
+#include <algorithm>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "engine/base/check.h"
+#include "engine/base/log.h"
+#include "engine/base/str.h"
+#include "server/access/policy.h"
+#include "server/version.h"
+
+namespace vs {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr int64_t kMinuteNs = int64_t{60} * 1'000'000'000;
+constexpr int64_t kDayNs = 24 * 60 * kMinuteNs;
+// How long the three steps of a graceful end may take; together less than ten seconds.
+constexpr milliseconds kAnnouncement{200};
+constexpr milliseconds kLastCalls{5000};
+constexpr milliseconds kLastBytes{2000};
+
+// A method that nobody decided about must not be reachable.
+void CheckPolicyIsComplete(const Router& router) {
+  for (const auto& [name, method] : router.methods()) {
+    if (FindAccessRule(name) != nullptr) continue;
+    LogError("server", Str(name, " is missing in the table of rights (server/access/policy.cc)"));
+    VS_CHECK(FindAccessRule(name) != nullptr);
+  }
+}
+
+AccessOptions ToAccessOptions(const config::ServerConfig& config, const DataFolder& folder,
+                              const PasswordCost& cost) {
+  const config::Sessions& sessions = config.sessions();
+  return {.database = folder.path() / "users.db",
+          .sessions = {.idle_ns = sessions.idle_minutes() * kMinuteNs,
+                       .lifetime_ns = sessions.lifetime_minutes() * kMinuteNs,
+                       .per_user = static_cast<size_t>(sessions.per_user()),
+                       .total = static_cast<size_t>(sessions.total())},
+          .password_cost = cost};
+}
+
+DispatcherOptions ToDispatcherOptions(const config::Limits& limits) {
+  DispatcherOptions options;
+  options.max_open_streams = limits.open_streams();
+  options.unread_limit_ns = int64_t{limits.unread_ms()} * 1'000'000;
+  return options;
+}
+
+GrpcServerOptions ToGrpcOptions(const config::Limits& limits, ListenAddress address) {
+  return {.acceptor = {.address = std::move(address),
+                       .max_connections = limits.connections(),
+                       .max_connections_per_address = limits.connections_per_address()},
+          .handshake_timeout = milliseconds(limits.handshake_ms()),
+          .keepalive = milliseconds(limits.keepalive_ms()),
+          .max_streams_per_connection = limits.streams_per_connection(),
+          .max_receive_bytes = limits.request_kib() << 10,
+          .memory_bytes = static_cast<size_t>(limits.receive_memory_mib()) << 20};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
+  VS_ASSIGN_OR_RETURN(DataFolder folder, DataFolder::Take(options.config.data_dir()));
+  std::unique_ptr<Server> server(new Server(options, std::move(folder)));
+  VS_RETURN_IF_ERROR(server->OpenStores());
+  server->RegisterServices();
+  VS_RETURN_IF_ERROR(server->StartNetwork());
+  return server;
+}
+
+Server::Server(const ServerOptions& options, DataFolder folder)
+    : options_(options),
+      config_(options_.config),
+      clock_(options.clock != nullptr ? *options.clock : system_clock_),
+      folder_(std::move(folder)),
+      alarms_(clock_) {}
+
+Server::~Server() {
+  if (dispatcher_) dispatcher_->Drain();
+  if (grpc_) grpc_->Stop(milliseconds(0));
+}
+
+Status Server::OpenStores() {
+  VS_ASSIGN_OR_RETURN(
+      access_,
+      AccessControl::Open(ToAccessOptions(config_, folder_, options_.password_cost), clock_));
+  if (options_.rescue_admin) {
+    VS_ASSIGN_OR_RETURN(one_time_password_, access_->accounts().RescueAdmin());
+  } else {
+    VS_ASSIGN_OR_RETURN(one_time_password_, access_->accounts().FirstPassword());
+  }
+  return Status();
+}
+
+void Server::RegisterServices() {
+  session_service_ = std::make_unique<SessionService>(*access_);
+  user_service_ = std::make_unique<UserService>(*access_);
+  system_service_ = std::make_unique<SystemService>(
+      SystemServiceOptions{.name = config_.name(), .version = kVersion, .data_dir = folder_.path()},
+      clock_, *access_, alarms_);
+  health_service_ = std::make_unique<HealthService>(health_);
+  session_service_->Register(router_);
+  user_service_->Register(router_);
+  system_service_->Register(router_);
+  health_service_->Register(router_);
+  if (config_.profile() == config::ServerConfig::DEVELOPMENT) {
+    reflection_service_ = std::make_unique<ReflectionService>();
+    reflection_service_->Register(router_);
+  }
+  CheckPolicyIsComplete(router_);
+}
+
+Status Server::StartNetwork() {
+  VS_ASSIGN_OR_RETURN(ListenAddress address, ListenAddress::Parse(config_.listen_address()));
+  GrpcServerOptions options = ToGrpcOptions(config_.limits(), std::move(address));
+  if (!config_.plaintext()) {
+    if (config_.has_tls_certificate()) {
+      options.certificate = {.certificate = config_.tls_certificate(), .key = config_.tls_key()};
+    } else {
+      VS_ASSIGN_OR_RETURN(options.certificate, EnsureCertificate(folder_.path() / "tls"));
+    }
+    VS_ASSIGN_OR_RETURN(const CertificateInfo info, CheckCertificate(*options.certificate));
+    fingerprint_ = info.fingerprint;
+    if (info.not_after_utc_ns < clock_.UtcNs() + 30 * kDayNs) {
+      alarms_.Raise("certificate", AlarmBoard::Severity::kWarning,
+                    Str(options.certificate->certificate.string(),
+                        " ends within 30 days, or has ended; put a new one in its place"));
+    }
+  }
+  dispatcher_ =
+      std::make_unique<Dispatcher>(router_, *access_, ToDispatcherOptions(config_.limits()));
+  VS_ASSIGN_OR_RETURN(grpc_, GrpcServer::Start(options, *dispatcher_));
+  system_service_->Attach(*dispatcher_, [this] { return grpc_->Connections(); });
+  grpc_->TakeConnections();
+  return Status();
+}
+
+void Server::Drain() {
+  health_.Drain();
+  // Whoever watches the health sees it before the streams end.
+  std::this_thread::sleep_for(kAnnouncement);
+  dispatcher_->Drain();
+  const auto deadline = std::chrono::steady_clock::now() + kLastCalls;
+  while (!dispatcher_->Idle() && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  grpc_->Stop(kLastBytes);
+}
+
+std::string Server::address() const {
+  // Parsed when the network was started.
+  ListenAddress address = *ListenAddress::Parse(config_.listen_address());
+  address.port = grpc_->port();
+  return address.ToString();
+}
+
+}  // namespace vs

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "engine/base/clock.h"
+#include "engine/base/status.h"
+#include "server/access/access_control.h"
+#include "server/access/password.h"
+#include "server/config/config.h"
+#include "server/data_folder.h"
+#include "server/rpc/dispatcher.h"
+#include "server/rpc/router.h"
+#include "server/services/alarm_board.h"
+#include "server/services/health_board.h"
+#include "server/services/health_service.h"
+#include "server/services/reflection_service.h"
+#include "server/services/session_service.h"
+#include "server/services/system_service.h"
+#include "server/services/user_service.h"
+#include "server/transport/grpc_server.h"
+
+namespace vs {
+
+struct ServerOptions {
+  config::ServerConfig config;
+  PasswordCost password_cost;  // less only in tests
+  // Gives the user "admin" a new one-time password.
+  bool rescue_admin = false;
+  // For sessions and throttling; the machine's clock if null. Must outlive the server.
+  const Clock* clock = nullptr;
+};
+
+// A whole server: makes the parts, hands them to each other, and takes them apart again.
+class Server {
+ public:
+  // Takes connections when it returns.
+  static Result<std::unique_ptr<Server>> Start(const ServerOptions& options);
+  // Without grace; see Drain.
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  // Ends gracefully, within ten seconds: health says NOT_SERVING, new calls and streams are
+  // refused, what runs comes to its end.
+  void Drain();
+
+  // "127.0.0.1:50051": where it listens, with the port that it really got.
+  std::string address() const;
+  uint16_t port() const { return grpc_->port(); }
+  // SHA-256 of its certificate; empty without TLS.
+  const std::string& fingerprint() const { return fingerprint_; }
+  // To log in as "admin", once; nothing when somebody has already. Told nowhere else.
+  const std::optional<std::string>& one_time_password() const { return one_time_password_; }
+
+  AccessControl& access() { return *access_; }
+  HealthBoard& health() { return health_; }
+  AlarmBoard& alarms() { return alarms_; }
+  const Dispatcher& dispatcher() const { return *dispatcher_; }
+  GrpcServer& grpc() { return *grpc_; }
+
+ private:
+  Server(const ServerOptions& options, DataFolder folder);
+  Status OpenStores();
+  void RegisterServices();
+  Status StartNetwork();
+
+  const ServerOptions options_;
+  const config::ServerConfig& config_;
+  const SystemClock system_clock_;
+  const Clock& clock_;
+  const DataFolder folder_;
+  std::string fingerprint_;
+  std::optional<std::string> one_time_password_;
+
+  // What is stored and known.
+  HealthBoard health_;
+  AlarmBoard alarms_;
+  std::unique_ptr<AccessControl> access_;
+
+  // What answers calls. They go before the parts above.
+  std::unique_ptr<SessionService> session_service_;
+  std::unique_ptr<UserService> user_service_;
+  std::unique_ptr<SystemService> system_service_;
+  std::unique_ptr<HealthService> health_service_;
+  std::unique_ptr<ReflectionService> reflection_service_;
+  Router router_;
+
+  // What brings calls. It goes first.
+  std::unique_ptr<Dispatcher> dispatcher_;
+  std::unique_ptr<GrpcServer> grpc_;
+};
+
+}  // namespace vs
