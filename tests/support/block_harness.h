@@ -10,7 +10,7 @@
 #include "engine/core/block.h"
 #include "engine/core/environment.h"
 
-namespace vs {
+namespace vs::test {
 
 // Runs one block by itself, as the scheduler would: no ports of other blocks, no threads.
 //
@@ -80,4 +80,4 @@ class BlockHarness {
   std::map<std::string, Value> outputs_;
 };
 
-}  // namespace vs
+}  // namespace vs::test

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <thread>
 
-namespace vs {
+namespace vs::test {
 
 // Polls `condition` until it holds. False after a minute: then something is stuck, however loaded
 // the machine.
@@ -17,4 +17,4 @@ bool WaitUntil(const Condition& condition) {
   return true;
 }
 
-}  // namespace vs
+}  // namespace vs::test

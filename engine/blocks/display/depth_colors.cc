@@ -17,8 +17,8 @@ class DepthColors final : public Block {
       {.initial = "turbo",
        .choices = {"grey", "hue", "turbo", "viridis"},
        .operator_editable = true,
-       .doc = "grey: near is light. hue: once round the colour circle, invalid red. turbo: far is "
-              "blue, near is red. viridis: even steps, for the colour-blind too."}};
+       .doc = "Grey: near is light. Hue: once round the colour circle, invalid red. Turbo: far is "
+              "blue, near is red. Viridis: even steps, for the colour-blind too."}};
   Param<double> near_m{this,
                        "near_m",
                        {.initial = 0.5,

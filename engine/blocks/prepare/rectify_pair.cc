@@ -35,7 +35,7 @@ class RectifyPair final : public Block {
       {.initial = 0,
        .min = 0.0,
        .max = 1.0,
-       .doc = "0 shows only what lies inside both pictures; 1 shows everything, with "
+       .doc = "How much to show: 0 only what lies inside both pictures, 1 everything, with "
               "black borders."}};
   Param<std::string> interpolation{
       this,

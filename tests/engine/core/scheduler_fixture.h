@@ -15,6 +15,8 @@
 
 namespace vs {
 
+using test::WaitUntil;
+
 // A door that is shut until Open(). Whoever waits gives up after a minute.
 class Gate {
  public:
