@@ -25,6 +25,10 @@ bool IsUserName(const std::string& name) {
 
 bool IsHumanRole(Role role) { return role >= Role::kViewer && role <= Role::kAdmin; }
 
+bool IsAdministrator(const UserRecord& user) {
+  return user.role == Role::kAdmin && !user.disabled;
+}
+
 Status CheckFullName(const std::string& full_name) {
   if (full_name.size() <= 128) return Status();
   return InvalidArgument(Str("the full name has ", full_name.size(), " bytes, at most 128 fit"));
@@ -128,6 +132,7 @@ Result<UserRecord> Accounts::UpdateUser(const std::string& name, const UserChang
   if (revision != 0 && revision != user.revision) {
     return Aborted(Str("somebody else changed the user ", name, " meanwhile; read it again"));
   }
+  const UserRecord before = user;
   if (change.full_name) {
     VS_RETURN_IF_ERROR(CheckFullName(*change.full_name));
     user.full_name = *change.full_name;
@@ -139,7 +144,7 @@ Result<UserRecord> Accounts::UpdateUser(const std::string& name, const UserChang
     user.role = *change.role;
   }
   if (change.disabled) user.disabled = *change.disabled;
-  if (user.role != Role::kAdmin || user.disabled) {
+  if (IsAdministrator(before) && !IsAdministrator(user)) {
     VS_RETURN_IF_ERROR(RequireOtherAdmin(user.name));
   }
   ++user.revision;
@@ -150,7 +155,7 @@ Result<UserRecord> Accounts::UpdateUser(const std::string& name, const UserChang
 Status Accounts::DeleteUser(const std::string& name) {
   MutexLock changing(changes_);
   VS_ASSIGN_OR_RETURN(const UserRecord user, RequireUser(name));
-  VS_RETURN_IF_ERROR(RequireOtherAdmin(user.name));
+  if (IsAdministrator(user)) VS_RETURN_IF_ERROR(RequireOtherAdmin(user.name));
   VS_RETURN_IF_ERROR(database_.DeleteUser(user.name));
   MutexLock lock(mutex_);
   users_.erase(user.name);
@@ -159,7 +164,7 @@ Status Accounts::DeleteUser(const std::string& name) {
 
 Status Accounts::RequireOtherAdmin(const std::string& name) const {
   for (const UserRecord& user : Users()) {
-    if (user.role == Role::kAdmin && !user.disabled && user.name != name) return Status();
+    if (IsAdministrator(user) && user.name != name) return Status();
   }
   return FailedPrecondition("the server needs an administrator; make somebody else one first");
 }
