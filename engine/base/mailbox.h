@@ -20,6 +20,15 @@ class Mailbox {
 
   explicit Mailbox(Policy policy = Policy::kLatest) : policy_(policy) {}
 
+  // Empties a mailbox, closed or not, for another use. Not while a Put may wait.
+  void Reopen(Policy policy) VS_EXCLUDES(mutex_) {
+    MutexLock lock(mutex_);
+    policy_ = policy;
+    value_.reset();
+    dropped_ = 0;
+    closed_ = false;
+  }
+
   // Called, without a lock held, whenever a value has become available. Set before the first Put.
   void OnAvailable(std::function<void()> notify) { notify_ = std::move(notify); }
 
@@ -64,10 +73,10 @@ class Mailbox {
   }
 
  private:
-  const Policy policy_;
   std::function<void()> notify_;
   mutable Mutex mutex_;
   CondVar room_;
+  Policy policy_ VS_GUARDED_BY(mutex_);
   std::optional<T> value_ VS_GUARDED_BY(mutex_);
   uint64_t dropped_ VS_GUARDED_BY(mutex_) = 0;
   bool closed_ VS_GUARDED_BY(mutex_) = false;

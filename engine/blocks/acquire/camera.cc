@@ -1,0 +1,74 @@
+// Takes pictures from one camera.
+#include <memory>
+#include <utility>
+
+#include "engine/base/mailbox.h"
+#include "engine/camera/camera_hub.h"
+#include "engine/core/block.h"
+
+namespace vs {
+namespace {
+
+using Box = Mailbox<FramePtr>;
+
+class Camera final : public Block {
+ public:
+  Out<Frame> picture{this, "picture", "The picture with its times and numbers."};
+  Out<GreyImage> image{this, "image", "Its pixels."};
+  Param<std::string> address{
+      this,
+      "address",
+      {.live = false,
+       .doc = "Address of the camera: gev:SERIAL or gev-ip:ADDRESS for GigE Vision, "
+              "sim:SCENE#left for the simulation, file:FOLDER?pattern=*.png for recorded "
+              "pictures. Features may follow, as in gev:21000001?ExposureTimeAbs=5000."}};
+
+  Camera() {
+    box_.OnAvailable([this] { Wake(); });
+  }
+
+  Status Start() override {
+    if (environment().cameras == nullptr) {
+      return FailedPrecondition("cameras need a server: run this sequence on one");
+    }
+    if (address->empty()) {
+      return InvalidArgument("set address to a camera's address, for example gev:21000001");
+    }
+    VS_ASSIGN_OR_RETURN(const CameraUri uri, CameraUri::Parse(*address));
+    VS_ASSIGN_OR_RETURN(camera_, environment().cameras->Acquire(uri));
+    box_.Reopen(camera_->Recorded() ? Box::Policy::kEvery : Box::Policy::kLatest);
+    return camera_->Start([this](FramePtr taken) { box_.Put(std::move(taken)); });
+  }
+
+  bool Ready() override { return box_.Available(); }
+
+  Status Run() override {
+    const auto taken = box_.TryTake();
+    if (!taken) return {};
+    frame().source_number = (*taken)->number;
+    frame().capture_ns = (*taken)->capture_ns;
+    frame().arrival_ns = (*taken)->arrival_ns;
+    image.Set((*taken)->image);
+    picture.Set(*taken);
+    return {};
+  }
+
+  void Stop() override {
+    box_.Close();
+    if (camera_ != nullptr) camera_->Stop();
+    camera_.reset();
+  }
+
+  uint64_t Dropped() const override { return box_.Dropped(); }
+
+ private:
+  Box box_;
+  std::shared_ptr<CameraSource> camera_;
+};
+
+VS_REGISTER_BLOCK(Camera, {.category = "Acquire",
+                           .doc = "Takes pictures from one camera. While the sequence is busy the "
+                                  "newest picture replaces older ones."});
+
+}  // namespace
+}  // namespace vs
