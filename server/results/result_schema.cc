@@ -7,6 +7,7 @@
 #include "engine/base/log.h"
 #include "engine/base/str.h"
 #include "server/results/uuid.h"
+#include "server/storage/atomic_file.h"
 
 namespace vs {
 namespace {
@@ -56,19 +57,11 @@ Result<Database> OpenWithEpoch(const std::filesystem::path& file) {
 }
 
 // The log files beside it belong to the damaged database and must not meet the new one.
-Result<std::filesystem::path> PutAside(const std::filesystem::path& file) {
-  std::filesystem::path aside;
-  for (int n = 1; aside.empty() || std::filesystem::exists(aside); ++n) {
-    aside = Str(file.string(), ".damaged-", n);
-  }
-  std::error_code error;
-  std::filesystem::rename(file, aside, error);
-  if (error) {
-    return FailedPrecondition(
-        Str(file.string(), " is damaged and cannot be put aside: ", error.message()));
-  }
+Result<std::filesystem::path> PutDatabaseAside(const std::filesystem::path& file) {
+  VS_ASSIGN_OR_RETURN(std::filesystem::path aside, PutAside(file));
   for (const char* suffix : {"-wal", "-shm"}) {
-    std::filesystem::rename(file.string() + suffix, aside.string() + suffix, error);
+    std::error_code there_is_none;
+    std::filesystem::rename(file.string() + suffix, aside.string() + suffix, there_is_none);
   }
   return aside;
 }
@@ -78,7 +71,7 @@ Result<std::filesystem::path> PutAside(const std::filesystem::path& file) {
 Result<Database> OpenResultStore(const std::filesystem::path& file) {
   Result<Database> database = OpenWithEpoch(file);
   if (database.has_value() || database.error().code() != StatusCode::kDataLoss) return database;
-  VS_ASSIGN_OR_RETURN(const std::filesystem::path aside, PutAside(file));
+  VS_ASSIGN_OR_RETURN(const std::filesystem::path aside, PutDatabaseAside(file));
   LogError("results", Str("the stored results cannot be read (", database.error().message(),
                           "); they were put aside as ", aside.string(),
                           " and an empty store was begun: recover them with "

@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "server/results/result_store.h"
-#include "tests/support/eventually.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/wait_until.h"
 
 namespace vs {
 namespace {
@@ -181,7 +181,7 @@ TEST_F(SqlQueryTest, ACancelledQueryEndsAndTheOneBehindItGetsItsTurn) {
     });
     first = answer.has_value() ? Status() : answer.error();
   });
-  EXPECT_TRUE(test::Eventually([&] { return running.load(); }));
+  EXPECT_TRUE(WaitUntil([&] { return running.load(); }));
   // Waits for its turn, in vain.
   const auto waiting = Run("SELECT 1", {}, {.timeout = std::chrono::milliseconds(1)});
   EXPECT_EQ(StatusCode::kDeadlineExceeded, waiting.error().code());
