@@ -106,7 +106,7 @@ TEST_F(ResultStoreTest, AResultIsOnTheDiskWhenItIsAnnounced) {
     announced = last;
   });
   for (int i = 0; i < 500; ++i) ASSERT_TRUE(store->Log(Record("p")).has_value());
-  ASSERT_TRUE(WaitUntil([&] { return announced == 500; }));
+  ASSERT_TRUE(test::WaitUntil([&] { return announced == 500; }));
   EXPECT_TRUE(readable);
   EXPECT_EQ(500u, store->State().committed);
   EXPECT_EQ(0u, store->State().queued);
@@ -118,7 +118,7 @@ TEST_F(ResultStoreTest, ADroppedHandleHearsNothingMore) {
   auto handle = store->OnCommitted([&](uint64_t) { ++calls; });
   handle.reset();
   ASSERT_TRUE(store->Log(Record("p")).has_value());
-  ASSERT_TRUE(WaitUntil([&] { return store->State().committed == 1; }));
+  ASSERT_TRUE(test::WaitUntil([&] { return store->State().committed == 1; }));
   store.reset();
   EXPECT_EQ(0, calls);
 }
@@ -145,7 +145,7 @@ TEST_F(ResultStoreTest, ALockedFileQueuesAndNothingIsLost) {
   ASSERT_TRUE(other->Execute("BEGIN EXCLUSIVE").ok());
   std::set<std::string> accepted;
   for (int i = 0; i < 50; ++i) accepted.insert(store->Log(Record("p")).value());
-  ASSERT_TRUE(WaitUntil([&] { return !store->State().fault.ok(); }));
+  ASSERT_TRUE(test::WaitUntil([&] { return !store->State().fault.ok(); }));
   EXPECT_EQ(StatusCode::kUnavailable, store->State().fault.code());
 
   const auto refused = store->Log(Record("one too many"));
@@ -156,7 +156,7 @@ TEST_F(ResultStoreTest, ALockedFileQueuesAndNothingIsLost) {
   EXPECT_EQ(1u, store->State().refused);
 
   ASSERT_TRUE(other->Execute("ROLLBACK").ok());
-  ASSERT_TRUE(WaitUntil([&] { return store->State().committed == 50; }));
+  ASSERT_TRUE(test::WaitUntil([&] { return store->State().committed == 50; }));
   EXPECT_TRUE(store->State().fault.ok());
   std::set<std::string> kept;
   for (const StoredResult& result : ReadAll()) kept.insert(result.result_id);
@@ -166,7 +166,7 @@ TEST_F(ResultStoreTest, ALockedFileQueuesAndNothingIsLost) {
 TEST_F(ResultStoreTest, WithTooLittleFreeSpaceItSaysSo) {
   auto store = Open({.min_free_bytes = uint64_t{1} << 60, .close_timeout = {}});
   ASSERT_TRUE(store->Log(Record("p")).has_value());
-  ASSERT_TRUE(WaitUntil([&] { return !store->State().fault.ok(); }));
+  ASSERT_TRUE(test::WaitUntil([&] { return !store->State().fault.ok(); }));
   EXPECT_EQ(StatusCode::kResourceExhausted, store->State().fault.code());
   EXPECT_THAT(store->State().fault.message(), HasSubstr("make room"));
   EXPECT_EQ(1u, store->State().queued);
@@ -182,7 +182,7 @@ TEST_F(ResultStoreTest, AFullDiskQueuesAndWritingGoesOnWhenThereIsRoom) {
   {
     auto store = Open({.min_free_bytes = 0});
     ASSERT_TRUE(store->Log(Record("first")).has_value());
-    ASSERT_TRUE(WaitUntil([&] { return store->State().committed == 1; }));
+    ASSERT_TRUE(test::WaitUntil([&] { return store->State().committed == 1; }));
     const auto ballast = folder_ / "ballast";
     {
       std::ofstream fill(ballast, std::ios::binary);
@@ -193,12 +193,12 @@ TEST_F(ResultStoreTest, AFullDiskQueuesAndWritingGoesOnWhenThereIsRoom) {
     ResultRecord large = Record("second");
     large.values["text"] = std::string(60'000, 't');
     ASSERT_TRUE(store->Log(large).has_value());
-    ASSERT_TRUE(WaitUntil([&] { return !store->State().fault.ok(); }));
+    ASSERT_TRUE(test::WaitUntil([&] { return !store->State().fault.ok(); }));
     EXPECT_EQ(StatusCode::kResourceExhausted, store->State().fault.code())
         << store->State().fault.ToString();
     EXPECT_EQ(1u, store->State().queued);
     std::filesystem::remove(ballast);
-    ASSERT_TRUE(WaitUntil([&] { return store->State().committed == 2; }));
+    ASSERT_TRUE(test::WaitUntil([&] { return store->State().committed == 2; }));
     EXPECT_TRUE(store->State().fault.ok());
     EXPECT_EQ(2u, ReadAll().size());
   }

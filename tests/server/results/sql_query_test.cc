@@ -181,7 +181,7 @@ TEST_F(SqlQueryTest, ACancelledQueryEndsAndTheOneBehindItGetsItsTurn) {
     });
     first = answer.has_value() ? Status() : answer.error();
   });
-  EXPECT_TRUE(WaitUntil([&] { return running.load(); }));
+  EXPECT_TRUE(test::WaitUntil([&] { return running.load(); }));
   // Waits for its turn, in vain.
   const auto waiting = Run("SELECT 1", {}, {.timeout = std::chrono::milliseconds(1)});
   EXPECT_EQ(StatusCode::kDeadlineExceeded, waiting.error().code());

@@ -87,7 +87,7 @@ TEST_F(SequenceManagerTest, ASequenceRunsFromStartToStop) {
   ASSERT_TRUE(manager_.Start("dials").ok());
   EXPECT_EQ(Activity::kRunning, ActivityOf("dials"));
   EXPECT_EQ(1u, manager_.Look("dials").value().revision);
-  EXPECT_TRUE(WaitUntil([&] { return manager_.Look("dials").value().stats.frames > 10; }));
+  EXPECT_TRUE(test::WaitUntil([&] { return manager_.Look("dials").value().stats.frames > 10; }));
   ASSERT_TRUE(manager_.Start("dials").ok());  // runs already
   EXPECT_GT(manager_.Look("dials").value().stats.frames, 10u);
   ASSERT_TRUE(manager_.Stop("dials").ok());
@@ -137,13 +137,13 @@ TEST_F(SequenceManagerTest, AFailingBlockDegradesAndAnExceptionIsAFault) {
   };
   ASSERT_TRUE(manager_.Start("dials").ok());
   mood = 1;
-  EXPECT_TRUE(WaitUntil([&] { return ActivityOf("dials") == Activity::kDegraded; }));
+  EXPECT_TRUE(test::WaitUntil([&] { return ActivityOf("dials") == Activity::kDegraded; }));
   EXPECT_EQ("step", manager_.Look("dials").value().error_block);
   EXPECT_EQ("camera is gone", manager_.Look("dials").value().error);
   mood = 0;
-  EXPECT_TRUE(WaitUntil([&] { return ActivityOf("dials") == Activity::kRunning; }));
+  EXPECT_TRUE(test::WaitUntil([&] { return ActivityOf("dials") == Activity::kRunning; }));
   mood = 2;
-  EXPECT_TRUE(WaitUntil([&] { return ActivityOf("dials") == Activity::kFault; }));
+  EXPECT_TRUE(test::WaitUntil([&] { return ActivityOf("dials") == Activity::kFault; }));
   EXPECT_THAT(manager_.Look("dials").value().error, HasSubstr("divided by cucumber"));
   mood = 0;
   EXPECT_TRUE(manager_.Start("dials").ok());
@@ -154,11 +154,11 @@ TEST_F(SequenceManagerTest, OthersSeeASlowStartAndAreNotHeldUp) {
   (void)store_->Create(ChainSpec("quick", {}), false, "anna");
   std::atomic<bool> go_on = false;
   ProbeOf("step").start = [&] {
-    EXPECT_TRUE(WaitUntil([&] { return go_on.load(); }));
+    EXPECT_TRUE(test::WaitUntil([&] { return go_on.load(); }));
     return Status();
   };
   std::thread starting([&] { EXPECT_TRUE(manager_.Start("dials").ok()); });
-  EXPECT_TRUE(WaitUntil([&] { return ActivityOf("dials") == Activity::kStarting; }));
+  EXPECT_TRUE(test::WaitUntil([&] { return ActivityOf("dials") == Activity::kStarting; }));
   EXPECT_TRUE(manager_.Start("quick").ok());
   EXPECT_EQ(StatusCode::kUnavailable, Change({Set("dial.gain", 2.0)}).code());
   go_on = true;
@@ -238,7 +238,7 @@ TEST_F(SequenceManagerTest, AChangeOfARunningSequenceHoldsFromTheFrameThatIsTold
   const auto answer = manager_.SetParameters("dials", {.values = {Set("step.offset", int64_t{5})}});
   ASSERT_TRUE(answer.has_value()) << answer.error().ToString();
   EXPECT_GT(answer->applied_at_frame, 0u);
-  EXPECT_TRUE(WaitUntil([&] { return first_changed > 0; }));
+  EXPECT_TRUE(test::WaitUntil([&] { return first_changed > 0; }));
   EXPECT_EQ(answer->applied_at_frame, first_changed);
   EXPECT_EQ(ParamValue(int64_t{5}), Stored("offset"));
 }
