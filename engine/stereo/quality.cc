@@ -31,74 +31,80 @@ void ForEachPixel(const PixelRect& region, int width, int height, Visit visit) {
 
 double Percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
 
-struct Point {
-  double x, y, z;
+// A pixel's ray (x, y, 1) and the nearness q = 1 / Z of what lies there, 1/m.
+struct Sample {
+  double x, y, q;
 };
 
-// z = a x + b y + c
+// All points with a X + b Y + c Z = 1; along a ray, q = a x + b y + c.
 struct Plane {
   double a, b, c;
 
-  double Norm() const { return std::sqrt(a * a + b * b + 1); }
-  double Distance(const Point& p) const { return std::abs(a * p.x + b * p.y + c - p.z) / Norm(); }
+  double Norm() const { return std::sqrt(a * a + b * b + c * c); }
+  double Nearness(const Sample& s) const { return a * s.x + b * s.y + c; }
+  // m, of the sample's point from the plane
+  double Distance(const Sample& s) const { return std::abs(Nearness(s) / s.q - 1) / Norm(); }
 };
 
-std::vector<Point> PointsOf(const DepthMap& map, const PixelRect& region) {
-  std::vector<Point> points;
+std::vector<Sample> SamplesOf(const DepthMap& map, const PixelRect& region) {
+  std::vector<Sample> samples;
   const RectifiedGeometry& g = map.geometry;
   ForEachPixel(region, map.depth_m.width(), map.depth_m.height(), [&](int x, int y) {
     const double z = map.depth_m.Row(y)[x];
-    if (!std::isfinite(z)) return;
-    points.push_back({(x - g.cx_px) * z / g.focal_px, (y - g.cy_px) * z / g.focal_px, z});
+    if (!(std::isfinite(z) && z > 0)) return;
+    samples.push_back({(x - g.cx_px) / g.focal_px, (y - g.cy_px) / g.focal_px, 1 / z});
   });
-  return points;
+  return samples;
 }
 
-// Least squares over the points nearer than `limit` to `plane` (all points without a plane).
-std::optional<Plane> FitOnce(const std::vector<Point>& points, const std::optional<Plane>& plane,
+// Least squares over the samples whose nearness is within `limit` of the plane's (all samples
+// without a plane).
+std::optional<Plane> FitOnce(const std::vector<Sample>& samples, const std::optional<Plane>& plane,
                              double limit) {
+  const auto used = [&](const Sample& s) {
+    return !plane || std::abs(plane->Nearness(s) - s.q) <= limit;
+  };
   // About the mean, so that the normal equations stay well conditioned.
-  const auto used = [&](const Point& p) { return !plane || plane->Distance(p) <= limit; };
   double n = 0;
-  Point mean{0, 0, 0};
-  for (const Point& p : points) {
-    if (!used(p)) continue;
+  Sample mean{0, 0, 0};
+  for (const Sample& s : samples) {
+    if (!used(s)) continue;
     n += 1;
-    mean.x += p.x;
-    mean.y += p.y;
-    mean.z += p.z;
+    mean.x += s.x;
+    mean.y += s.y;
+    mean.q += s.q;
   }
   if (n < 3) return std::nullopt;
-  mean = {mean.x / n, mean.y / n, mean.z / n};
+  mean = {mean.x / n, mean.y / n, mean.q / n};
   double xx = 0;
   double xy = 0;
   double yy = 0;
-  double xz = 0;
-  double yz = 0;
-  for (const Point& p : points) {
-    if (!used(p)) continue;
-    const double x = p.x - mean.x;
-    const double y = p.y - mean.y;
+  double xq = 0;
+  double yq = 0;
+  for (const Sample& s : samples) {
+    if (!used(s)) continue;
+    const double x = s.x - mean.x;
+    const double y = s.y - mean.y;
     xx += x * x;
     xy += x * y;
     yy += y * y;
-    xz += x * (p.z - mean.z);
-    yz += y * (p.z - mean.z);
+    xq += x * (s.q - mean.q);
+    yq += y * (s.q - mean.q);
   }
   const double determinant = xx * yy - xy * xy;
-  if (determinant <= 1e-9 * xx * yy) return std::nullopt;
-  const double a = (xz * yy - yz * xy) / determinant;
-  const double b = (yz * xx - xz * xy) / determinant;
-  return Plane{a, b, mean.z - a * mean.x - b * mean.y};
+  if (determinant <= 1e-9 * (xx + yy) * (xx + yy)) return std::nullopt;
+  const double a = (xq * yy - yq * xy) / determinant;
+  const double b = (yq * xx - xq * xy) / determinant;
+  return Plane{a, b, mean.q - a * mean.x - b * mean.y};
 }
 
-// Three robust standard deviations of the distances.
-double OutlierLimit(const std::vector<Point>& points, const Plane& plane,
-                    std::vector<double>* distances) {
-  distances->clear();
-  for (const Point& p : points) distances->push_back(plane.Distance(p));
-  const auto middle = distances->begin() + static_cast<std::ptrdiff_t>(distances->size() / 2);
-  std::nth_element(distances->begin(), middle, distances->end());
+// Three robust standard deviations of the nearness.
+double OutlierLimit(const std::vector<Sample>& samples, const Plane& plane,
+                    std::vector<double>* scratch) {
+  scratch->clear();
+  for (const Sample& s : samples) scratch->push_back(std::abs(plane.Nearness(s) - s.q));
+  const auto middle = scratch->begin() + static_cast<std::ptrdiff_t>(scratch->size() / 2);
+  std::nth_element(scratch->begin(), middle, scratch->end());
   // 1.4826: the standard deviation of a normal distribution over its median absolute deviation.
   return std::max(3 * 1.4826 * *middle, 1e-9);
 }
@@ -117,35 +123,34 @@ double ValidPercent(const DisparityMap& map, const PixelRect& region) {
 
 Result<PlaneFit> FitPlane(const DepthMap& map, const PixelRect& region) {
   constexpr int kRounds = 5;
-  constexpr size_t kLeastPoints = 16;
+  constexpr size_t kLeastSamples = 16;
   if (map.geometry.focal_px <= 0) {
     return FailedPrecondition("plane fit: the depth map's focal length is not known");
   }
-  const std::vector<Point> points = PointsOf(map, region);
-  if (points.size() < kLeastPoints) {
-    return FailedPrecondition(Str("plane fit: the region has ", points.size(),
-                                  " valid pixels; it needs at least ", kLeastPoints));
+  const std::vector<Sample> samples = SamplesOf(map, region);
+  if (samples.size() < kLeastSamples) {
+    return FailedPrecondition(Str("plane fit: the region has ", samples.size(),
+                                  " valid pixels; it needs at least ", kLeastSamples));
   }
-  std::optional<Plane> plane = FitOnce(points, std::nullopt, 0);
+  std::optional<Plane> plane = FitOnce(samples, std::nullopt, 0);
   std::vector<double> scratch;
   double limit = 0;
   for (int round = 0; round < kRounds && plane; ++round) {
-    limit = OutlierLimit(points, *plane, &scratch);
-    plane = FitOnce(points, plane, limit);
+    limit = OutlierLimit(samples, *plane, &scratch);
+    plane = FitOnce(samples, plane, limit);
   }
   if (!plane) return FailedPrecondition("plane fit: the region's points do not span a plane");
   PlaneFit fit;
   double squares = 0;
-  for (const Point& p : points) {
-    const double distance = plane->Distance(p);
-    if (distance > limit) continue;
+  for (const Sample& s : samples) {
+    if (std::abs(plane->Nearness(s) - s.q) > limit) continue;
     ++fit.pixels;
-    squares += distance * distance;
+    squares += plane->Distance(s) * plane->Distance(s);
   }
   fit.rms_m = std::sqrt(squares / std::max<double>(1, static_cast<double>(fit.pixels)));
-  fit.distance_m = std::abs(plane->c) / plane->Norm();
-  fit.tilt_deg = std::acos(1 / plane->Norm()) * 180 / std::numbers::pi;
-  fit.used_percent = Percent(static_cast<double>(fit.pixels), static_cast<double>(points.size()));
+  fit.distance_m = 1 / plane->Norm();
+  fit.tilt_deg = std::acos(std::abs(plane->c) / plane->Norm()) * 180 / std::numbers::pi;
+  fit.used_percent = Percent(static_cast<double>(fit.pixels), static_cast<double>(samples.size()));
   return fit;
 }
 

@@ -32,9 +32,10 @@ struct PlaneFit {
   int64_t pixels = 0;       // used
 };
 
-// Fits a plane to the points of a region by least squares, leaving out points farther from it than
-// three robust standard deviations (from the median deviation), in a few rounds.
-// FAILED_PRECONDITION when the region has fewer than 16 valid pixels or they do not span a plane.
+// Fits a plane to a region by least squares of 1 / depth, in which stereo's noise is even, leaving
+// out pixels farther off than three robust standard deviations (from the median deviation), in a
+// few rounds. FAILED_PRECONDITION when the focal length is not known, or the region has fewer than
+// 16 valid pixels or they do not span a plane.
 Result<PlaneFit> FitPlane(const DepthMap& map, const PixelRect& region);
 
 // A disparity map against the truth. The measures are Middlebury's (Scharstein, Szeliski 2002),

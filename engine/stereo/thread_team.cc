@@ -11,7 +11,7 @@ ThreadTeam::~ThreadTeam() {
   for (std::thread& helper : helpers_) helper.join();
 }
 
-void ThreadTeam::RunErased(int parts, Function function, void* context) {
+void ThreadTeam::RunErased(int parts, Function function, const void* context) {
   if (parts <= 1) return function(context, 0);
   while (static_cast<int>(helpers_.size()) < parts - 1) {
     const int part = static_cast<int>(helpers_.size()) + 1;
@@ -41,7 +41,7 @@ void ThreadTeam::Help(int part) {
   uint64_t seen = 0;
   for (;;) {
     Function function = nullptr;
-    void* context = nullptr;
+    const void* context = nullptr;
     {
       MutexLock lock(mutex_);
       while (!ending_ && (round_ == seen || part >= parts_)) {

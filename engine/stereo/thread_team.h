@@ -22,16 +22,16 @@ class ThreadTeam {
   // Calls work(part) once for each part of 0 .. parts - 1, each on a thread of its own, and returns
   // when all are done. What part 0 throws is passed on; the other parts must not throw.
   template <class Work>
-  void Run(int parts, Work&& work) {
+  void Run(int parts, const Work& work) {
     RunErased(
-        parts, [](void* context, int part) { (*static_cast<Work*>(context))(part); },
-        static_cast<void*>(&work));
+        parts, [](const void* context, int part) { (*static_cast<const Work*>(context))(part); },
+        &work);
   }
 
  private:
-  using Function = void (*)(void* context, int part);
+  using Function = void (*)(const void* context, int part);
 
-  void RunErased(int parts, Function function, void* context) VS_EXCLUDES(mutex_);
+  void RunErased(int parts, Function function, const void* context) VS_EXCLUDES(mutex_);
   void Help(int part) VS_EXCLUDES(mutex_);
 
   Mutex mutex_;
@@ -40,7 +40,7 @@ class ThreadTeam {
   int parts_ VS_GUARDED_BY(mutex_) = 0;
   int unfinished_ VS_GUARDED_BY(mutex_) = 0;
   Function function_ VS_GUARDED_BY(mutex_) = nullptr;
-  void* context_ VS_GUARDED_BY(mutex_) = nullptr;
+  const void* context_ VS_GUARDED_BY(mutex_) = nullptr;
   bool ending_ VS_GUARDED_BY(mutex_) = false;
   std::vector<std::thread> helpers_;  // helper h runs part h + 1
 };
