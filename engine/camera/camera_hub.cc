@@ -1,6 +1,7 @@
 #include "engine/camera/camera_hub.h"
 
 #include <algorithm>
+#include <atomic>
 #include <thread>
 #include <utility>
 
@@ -15,43 +16,47 @@ constexpr std::chrono::milliseconds kAskTime{150};
 
 }  // namespace
 
+// Destroys cameras in the background, each on a thread of its own.
 class CameraHub::Closer {
  public:
-  Closer() : thread_([this] { Run(); }) {}
+  Closer() = default;
   // Waits until all are closed.
-  ~Closer() {
-    {
-      MutexLock lock(mutex_);
-      quit_ = true;
-      changed_.NotifyAll();
-    }
-    thread_.join();
-  }
+  ~Closer() { Reap(true); }
   Closer(const Closer&) = delete;
   Closer& operator=(const Closer&) = delete;
 
   void Close(std::unique_ptr<SharedCamera> camera) {
+    Reap(false);
+    auto done = std::make_shared<std::atomic<bool>>(false);
+    std::thread thread([done, camera = std::move(camera)]() mutable {
+      camera.reset();
+      *done = true;
+    });
     MutexLock lock(mutex_);
-    cameras_.push_back(std::move(camera));
-    changed_.NotifyAll();
+    closing_.push_back({std::move(thread), std::move(done)});
   }
 
  private:
-  void Run() {
-    while (true) {
-      std::vector<std::unique_ptr<SharedCamera>> closing;  // destroyed after the lock is gone
+  struct Closing {
+    std::thread thread;
+    std::shared_ptr<std::atomic<bool>> done;
+  };
+
+  void Reap(bool all) {
+    std::vector<Closing> ended;
+    {
       MutexLock lock(mutex_);
-      while (cameras_.empty() && !quit_) changed_.Wait(mutex_);
-      if (cameras_.empty()) return;
-      closing.swap(cameras_);
+      for (size_t i = closing_.size(); i-- > 0;) {
+        if (!all && !*closing_[i].done) continue;
+        ended.push_back(std::move(closing_[i]));
+        closing_.erase(closing_.begin() + static_cast<std::ptrdiff_t>(i));
+      }
     }
+    for (Closing& closing : ended) closing.thread.join();
   }
 
   Mutex mutex_;
-  CondVar changed_;
-  std::vector<std::unique_ptr<SharedCamera>> cameras_ VS_GUARDED_BY(mutex_);
-  bool quit_ VS_GUARDED_BY(mutex_) = false;
-  std::thread thread_;
+  std::vector<Closing> closing_ VS_GUARDED_BY(mutex_);
 };
 
 CameraHub::CameraHub() : closer_(std::make_shared<Closer>()) {}

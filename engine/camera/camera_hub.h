@@ -24,7 +24,7 @@ class CameraHub {
   };
 
   CameraHub();
-  ~CameraHub();
+  ~CameraHub();  // waits until the cameras that were let go are closed
 
   // The camera of this URI, opened when the first user needs it and closed when the last one lets
   // go. Each user has its own Start and Stop; all see the same pictures. A URI without options also
@@ -46,7 +46,7 @@ class CameraHub {
     std::weak_ptr<SharedCamera> camera;
   };
 
-  // Cameras are closed on its thread: one that does not answer takes seconds.
+  // Cameras are closed in the background: one that does not answer takes seconds.
   const std::shared_ptr<Closer> closer_;
   mutable Mutex mutex_;
   std::vector<Open> open_ VS_GUARDED_BY(mutex_);

@@ -14,7 +14,12 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kFirstRetry{250};
 constexpr milliseconds kLastRetry{2000};
-constexpr milliseconds kLastRetryForControl{500};  // the other program may let go any moment
+// While another program has control it may let go any moment. If it crashed, the camera waits for
+// its heartbeat, and some cameras take each of our questions for one: so now and then ask nothing
+// for longer than a heartbeat.
+constexpr milliseconds kRetryForControl{500};
+constexpr milliseconds kQuietForControl{3500};
+constexpr int kQuietEvery = 10;
 constexpr milliseconds kSearchTime{500};
 constexpr milliseconds kAskTime{150};
 constexpr milliseconds kPopTime{10};
@@ -78,19 +83,29 @@ void GevDevice::Run() {
     if (opened) status = Serve();
     if (receiver_.counters().frames != frames_before) retry = kFirstRetry;
     if (!quit_) {
-      if (opened || retry == kFirstRetry) {
-        LogWarn("camera", Str(options_.uri, opened ? " lost: " : ": ", status.message()));
-      }
+      LogProblem(opened ? Str("lost: ", status.message()) : status.message());
       calls_.Refuse(status);
       SetState(opened ? CameraState::kLost : CameraState::kOpening, status.message());
     }
     if (session_ != nullptr) EndStream(status.ok());
     session_.reset();
     if (!streaming_wanted_) continue;
-    SleepUnlessQuit(retry);
-    const bool wait_for_control = status.code() == StatusCode::kFailedPrecondition;
-    retry = std::min(2 * retry, wait_for_control ? kLastRetryForControl : kLastRetry);
+    if (status.code() == StatusCode::kFailedPrecondition) {
+      const bool quiet = ++refusals_ % kQuietEvery == 0;
+      SleepUnlessQuit(quiet ? kQuietForControl : kRetryForControl);
+    } else {
+      refusals_ = 0;
+      SleepUnlessQuit(retry);
+      retry = std::min(2 * retry, kLastRetry);
+    }
   }
+}
+
+// The same problem is told once, however often it is met while trying.
+void GevDevice::LogProblem(const std::string& problem) {
+  if (problem == logged_problem_) return;
+  logged_problem_ = problem;
+  LogWarn("camera", Str(options_.uri, ": ", problem));
 }
 
 void GevDevice::SleepUnlessQuit(milliseconds duration) {
@@ -130,6 +145,7 @@ Status GevDevice::Open() {
   VS_ASSIGN_OR_RETURN(session_, GevSession::Open(camera_.address));
   VS_RETURN_IF_ERROR(session_->Configure(options_.features, memory_));
   NoteSettings();
+  logged_problem_.clear();
   const bool again = std::exchange(opened_before_, true);
   {
     MutexLock lock(stats_mutex_);

@@ -55,6 +55,7 @@ class GevDevice {
  private:
   void Run();
   bool Needed() const { return streaming_wanted_ || calls_.Waiting(); }
+  void LogProblem(const std::string& problem);
   void SleepUnlessQuit(std::chrono::milliseconds duration);
 
   Status Open();
@@ -100,6 +101,8 @@ class GevDevice {
   bool socket_warned_ = false;
   bool small_packets_ = false;  // large ones do not get through
   bool opened_before_ = false;
+  int refusals_ = 0;  // in a row: another program had control
+  std::string logged_problem_;
   int64_t next_housekeeping_ns_ = 0;
   int64_t last_housekeeping_ns_ = 0;
   uint64_t last_frames_ = 0;

@@ -1,7 +1,9 @@
 #include "engine/camera/gev_features.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cstdio>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -109,6 +111,13 @@ void DescribeRange(ArvDevice* device, FeatureInfo& info) {
   }
 }
 
+// Without an exponent where it can be avoided.
+std::string NumberText(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.15g", value);
+  return text.data();
+}
+
 std::string RangeText(const FeatureInfo& info) {
   std::string text;
   if (info.type == Type::kEnumeration) {
@@ -116,24 +125,19 @@ std::string RangeText(const FeatureInfo& info) {
     return "one of " + text;
   }
   text = TypeName(info.type);
-  if (info.min) text += Str(" from ", *info.min);
-  if (info.max) text += Str(" up to ", *info.max);
+  if (info.min) text += " from " + NumberText(*info.min);
+  if (info.max) text += " up to " + NumberText(*info.max);
   return info.unit.empty() ? text : text + " " + info.unit;
 }
 
-template <class T>
-std::string ValueText(const T& value) {
-  return Str(value);
-}
-
 Status WrongValue(const FeatureInfo& info, const FeatureValue& value) {
-  const std::string text = std::visit([](const auto& plain) { return ValueText(plain); }, value);
+  const std::string text = std::visit([](const auto& plain) { return Str(plain); }, value);
   return InvalidArgument(Str("\"", text, "\" is not ", RangeText(info)));
 }
 
 Status CheckRange(const FeatureInfo& info, double value) {
   if ((!info.min || value >= *info.min) && (!info.max || value <= *info.max)) return {};
-  return OutOfRange(Str(value, " is not ", RangeText(info)));
+  return OutOfRange(Str(NumberText(value), " is not ", RangeText(info)));
 }
 
 std::optional<double> AsNumber(const FeatureValue& value) {

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <thread>
 #include <utility>
 
 #include "engine/base/str.h"
+#include "tests/support/eventually.h"
 
 namespace vs::test {
 
@@ -86,15 +86,6 @@ std::string CameraWatch::Describe() const {
              s.frames, ", incomplete ", s.incomplete, ", stale ", s.rejected_stale, ", lost ",
              s.lost, ", underruns ", s.underruns, ", resend requests ", s.resend_requests,
              ", resent ", s.resent, ", reconnects ", s.reconnects);
-}
-
-bool Eventually(const std::function<bool()>& condition) {
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return true;
 }
 
 }  // namespace vs::test

@@ -49,7 +49,4 @@ class CameraWatch {
   std::vector<FramePtr> held_ VS_GUARDED_BY(mutex_);
 };
 
-// Polls until `condition` holds; false after kPatience.
-bool Eventually(const std::function<bool()>& condition);
-
 }  // namespace vs::test
