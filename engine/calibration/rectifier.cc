@@ -5,12 +5,10 @@
 #include <utility>
 
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "engine/base/recycler.h"
 #include "engine/base/str.h"
 #include "engine/calibration/validate_rig.h"
-#include "engine/image/opencv_view.h"
 
 namespace vs {
 namespace {
@@ -35,15 +33,26 @@ cv::Vec<double, 5> Distortion(const CameraModel& camera) {
   return {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
 }
 
-int CvInterpolation(Interpolation interpolation) {
-  switch (interpolation) {
-    case Interpolation::kNearest:
-      return cv::INTER_NEAREST;
-    case Interpolation::kCubic:
-      return cv::INTER_CUBIC;
-    default:
-      return cv::INTER_LINEAR;
+// OpenCV's fixed-point maps: whole pixels, and the parts in 1/32 px as 32 * y + x.
+RemapTable MakeTable(const cv::Matx33d& camera, const CameraModel& model,
+                     const cv::Matx33d& rotation, const cv::Matx34d& projection, cv::Size size) {
+  cv::Mat pixels;
+  cv::Mat parts;
+  cv::initUndistortRectifyMap(camera, Distortion(model), rotation, projection, size, CV_16SC2,
+                              pixels, parts);
+  RemapTable table{.width = size.width, .height = size.height};
+  table.sources.reserve(static_cast<size_t>(size.area()));
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const auto pixel = pixels.at<cv::Vec2s>(y, x);
+      const auto part = parts.at<uint16_t>(y, x);
+      table.sources.push_back({.x = pixel[0],
+                               .y = pixel[1],
+                               .x_part = static_cast<uint8_t>(part % 32),
+                               .y_part = static_cast<uint8_t>(part / 32)});
+    }
   }
+  return table;
 }
 
 Status CheckSize(const StereoRig& rig, int width, int height) {
@@ -68,14 +77,9 @@ Status CheckSize(const StereoRig& rig, int width, int height) {
 struct Rectifier::Maps {
   RectifiedGeometry geometry;
   std::array<double, 9> rectified_from_left_rotation{};
-  int interpolation = cv::INTER_LINEAR;
-  // Where each rectified pixel comes from: whole pixels, and fractions in 1/32.
-  struct View {
-    cv::Mat pixels;
-    cv::Mat fractions;
-  };
-  View left;
-  View right;
+  Interpolation interpolation = Interpolation::kLinear;
+  RemapTable left;
+  RemapTable right;
   Recycler<Frame> frames;
 };
 
@@ -103,11 +107,8 @@ Result<Rectifier> Rectifier::Make(const StereoRig& rig, int width, int height,
     cv::stereoRectify(left_camera, Distortion(rig.left), right_camera, Distortion(rig.right), size,
                       rotation, translation, left_rotation, right_rotation, left_projection,
                       right_projection, unused, cv::CALIB_ZERO_DISPARITY, options.alpha, size);
-    cv::initUndistortRectifyMap(left_camera, Distortion(rig.left), left_rotation, left_projection,
-                                size, CV_16SC2, maps->left.pixels, maps->left.fractions);
-    cv::initUndistortRectifyMap(right_camera, Distortion(rig.right), right_rotation,
-                                right_projection, size, CV_16SC2, maps->right.pixels,
-                                maps->right.fractions);
+    maps->left = MakeTable(left_camera, rig.left, left_rotation, left_projection, size);
+    maps->right = MakeTable(right_camera, rig.right, right_rotation, right_projection, size);
     std::copy_n(left_rotation.val, 9, maps->rectified_from_left_rotation.begin());
     const double focal = left_projection(0, 0);
     maps->geometry = {.width = width,
@@ -121,7 +122,7 @@ Result<Rectifier> Rectifier::Make(const StereoRig& rig, int width, int height,
     return InvalidArgument(
         Str("stereo rig \"", rig.name, "\" cannot be rectified: ", error.what()));
   }
-  maps->interpolation = CvInterpolation(options.interpolation);
+  maps->interpolation = options.interpolation;
   const RectifiedGeometry& g = maps->geometry;
   if (!(std::isfinite(g.focal_px) && g.focal_px > 0 && g.baseline_m > 0)) {
     return InvalidArgument(Str("stereo rig \"", rig.name,
@@ -131,7 +132,7 @@ Result<Rectifier> Rectifier::Make(const StereoRig& rig, int width, int height,
 }
 
 Result<StereoFrame> Rectifier::Rectify(const StereoFrame& raw, BufferPool& pool) const {
-  const auto rectify = [&](const FramePtr& frame, const Maps::View& view) -> Result<FramePtr> {
+  const auto rectify = [&](const FramePtr& frame, const RemapTable& table) -> Result<FramePtr> {
     if (frame == nullptr) return InvalidArgument("rectification: a picture of the pair is missing");
     const GreyImage& image = frame->image;
     if (image.width() != maps_->geometry.width || image.height() != maps_->geometry.height) {
@@ -142,8 +143,7 @@ Result<StereoFrame> Rectifier::Rectify(const StereoFrame& raw, BufferPool& pool)
     }
     Frame rectified = *frame;
     rectified.image = GreyImage(pool, image.width(), image.height());
-    cv::remap(CvView(image), CvView(rectified.image), view.pixels, view.fractions,
-              maps_->interpolation, cv::BORDER_CONSTANT, cv::Scalar(0));
+    Remap(image, table, maps_->interpolation, &rectified.image);
     return FramePtr(std::allocate_shared<Frame>(maps_->frames, std::move(rectified)));
   };
   StereoFrame pair = raw;

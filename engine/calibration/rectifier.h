@@ -1,18 +1,16 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <memory>
 
 #include "engine/base/status.h"
+#include "engine/calibration/remap.h"
 #include "engine/image/buffer.h"
 #include "engine/image/frame.h"
 #include "engine/image/rectified_geometry.h"
 #include "engine/image/stereo_rig.h"
 
 namespace vs {
-
-enum class Interpolation : uint8_t { kNearest, kLinear, kCubic };
 
 struct RectifyOptions {
   // 0: only pixels that both cameras saw, so the view is a little narrower; 1: everything that

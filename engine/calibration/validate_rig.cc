@@ -19,8 +19,9 @@ void CheckCamera(const CameraModel& camera, const std::string& name, std::vector
   const auto wrong = [&](const char* field, std::string message) {
     faults->push_back({name + "." + field, std::move(message)});
   };
+  const auto is_size = [](int value) { return value >= 16 && value <= 16384; };
   const auto check_size = [&](const char* field, int value) {
-    if (value < 16 || value > 16384) {
+    if (!is_size(value)) {
       wrong(field, Str("is ", value, " px; it must be 16 .. 16384 px"));
     }
   };
@@ -30,7 +31,7 @@ void CheckCamera(const CameraModel& camera, const std::string& name, std::vector
     }
   };
   const auto check_centre = [&](const char* field, double value, int size) {
-    if (!(value >= 0 && value <= size - 1)) {
+    if (is_size(size) && !(value >= 0 && value <= size - 1)) {
       wrong(field, Str("is ", value, " px; the principal point must lie inside the picture, 0 .. ",
                        size - 1, " px"));
     }

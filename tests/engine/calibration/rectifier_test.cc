@@ -1,0 +1,191 @@
+#include "engine/calibration/rectifier.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "engine/image/buffer.h"
+#include "tests/engine/calibration/sample_rig.h"
+
+namespace vs {
+namespace {
+
+using testing::HasSubstr;
+
+struct Pixel {
+  double x, y;
+};
+using Point = std::array<double, 3>;
+
+Point Rotate(const std::array<double, 9>& r, const Point& p) {
+  return {r[0] * p[0] + r[1] * p[1] + r[2] * p[2], r[3] * p[0] + r[4] * p[1] + r[5] * p[2],
+          r[6] * p[0] + r[7] * p[1] + r[8] * p[2]};
+}
+
+// Where a camera with distortion sees a point of its own frame, in pictures of `width` px.
+Pixel Project(const CameraModel& c, const Point& p, int width) {
+  const double x = p[0] / p[2];
+  const double y = p[1] / p[2];
+  const double r2 = x * x + y * y;
+  const double radial = 1 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
+  const double xd = x * radial + 2 * c.p1 * x * y + c.p2 * (r2 + 2 * x * x);
+  const double yd = y * radial + c.p1 * (r2 + 2 * y * y) + 2 * c.p2 * x * y;
+  const double scale = static_cast<double>(width) / c.width;
+  return {(c.fx_px * xd + c.cx_px + 0.5) * scale - 0.5,
+          (c.fy_px * yd + c.cy_px + 0.5) * scale - 0.5};
+}
+
+void DrawDot(Pixel centre, GreyImage* image) {
+  constexpr double kSigma = 2.5;
+  for (int y = static_cast<int>(centre.y) - 12; y <= centre.y + 12; ++y) {
+    for (int x = static_cast<int>(centre.x) - 12; x <= centre.x + 12; ++x) {
+      if (x < 0 || y < 0 || x >= image->width() || y >= image->height()) continue;
+      const double r2 = (x - centre.x) * (x - centre.x) + (y - centre.y) * (y - centre.y);
+      image->Row(y)[x] = static_cast<uint8_t>(
+          std::lround(image->Row(y)[x] + 250 * std::exp(-r2 / (2 * kSigma * kSigma))));
+    }
+  }
+}
+
+// The centre of what is bright within 10 px.
+Pixel FindDot(const GreyImage& image, Pixel near) {
+  double sum = 0;
+  Pixel centre{0, 0};
+  for (int y = static_cast<int>(near.y) - 10; y <= near.y + 10; ++y) {
+    for (int x = static_cast<int>(near.x) - 10; x <= near.x + 10; ++x) {
+      if (x < 0 || y < 0 || x >= image.width() || y >= image.height()) continue;
+      sum += image.Row(y)[x];
+      centre.x += x * image.Row(y)[x];
+      centre.y += y * image.Row(y)[x];
+    }
+  }
+  return {centre.x / sum, centre.y / sum};
+}
+
+class RectifierTest : public testing::Test {
+ protected:
+  static FramePtr MakeFrame(GreyImage image) {
+    auto frame = std::make_shared<Frame>();
+    frame->image = std::move(image);
+    frame->camera = "21000001";
+    frame->number = 7;
+    return frame;
+  }
+  GreyImage Black(int width, int height) {
+    GreyImage image(pool_, width, height);
+    image.Fill(0);
+    return image;
+  }
+
+  // Draws points as both cameras see them, rectifies, and compares with the ideal pair.
+  void ExpectIdealPair(int width, int height, const RectifyOptions& options) {
+    const StereoRig rig = SampleRig();
+    const auto rectifier = Rectifier::Make(rig, width, height, options);
+    ASSERT_TRUE(rectifier.has_value()) << rectifier.error().ToString();
+    const RectifiedGeometry& g = rectifier->geometry();
+    EXPECT_EQ(g.width, width);
+    EXPECT_NEAR(g.baseline_m, 0.12, 0.0001);
+    std::vector<Point> points;
+    GreyImage left = Black(width, height);
+    GreyImage right = Black(width, height);
+    for (int i = -2; i <= 2; ++i) {
+      for (int j = -2; j <= 2; ++j) {
+        const Point p = {0.05 + 0.14 * i, 0.12 * j, 0.9 + 0.04 * (i + j)};
+        Point q = Rotate(rig.right_from_left_rotation, p);
+        for (size_t k = 0; k < 3; ++k) q[k] += rig.right_from_left_translation_m[k];
+        points.push_back(p);
+        DrawDot(Project(rig.left, p, width), &left);
+        DrawDot(Project(rig.right, q, width), &right);
+      }
+    }
+    StereoFrame raw{.left = MakeFrame(left), .right = MakeFrame(right), .number = 9};
+    const auto pair = rectifier->Rectify(raw, pool_);
+    ASSERT_TRUE(pair.has_value()) << pair.error().ToString();
+    double worst_row = 0;
+    double worst_place = 0;
+    for (const Point& p : points) {
+      const Point r = Rotate(rectifier->rectified_from_left_rotation(), p);
+      const Pixel ideal_left{g.focal_px * r[0] / r[2] + g.cx_px,
+                             g.focal_px * r[1] / r[2] + g.cy_px};
+      const double disparity = g.focal_px * g.baseline_m / r[2] - g.principal_offset_px;
+      const Pixel ideal_right{ideal_left.x - disparity, ideal_left.y};
+      const Pixel l = FindDot(pair->left->image, ideal_left);
+      const Pixel q = FindDot(pair->right->image, ideal_right);
+      worst_row = std::max(worst_row, std::abs(l.y - q.y));
+      for (const double error :
+           {l.x - ideal_left.x, l.y - ideal_left.y, q.x - ideal_right.x, q.y - ideal_right.y}) {
+        worst_place = std::max(worst_place, std::abs(error));
+      }
+    }
+    EXPECT_LT(worst_row, 0.05) << "px between the rows of the two views";
+    EXPECT_LT(worst_place, 0.05) << "px from where the geometry says";
+  }
+
+  BufferPool pool_;
+};
+
+TEST_F(RectifierTest, PutsEachPointIntoOneRowWhereTheGeometrySays) {
+  ExpectIdealPair(1296, 966, {});
+}
+
+TEST_F(RectifierTest, ServesBinnedPicturesOfTheSameRig) { ExpectIdealPair(648, 483, {}); }
+
+TEST_F(RectifierTest, MayShowEverythingOrInterpolateCubically) {
+  ExpectIdealPair(1296, 966, {.alpha = 1, .interpolation = Interpolation::kCubic});
+}
+
+TEST_F(RectifierTest, KeepsWhatIsKnownOfThePairAndDropsItsTruth) {
+  const auto rectifier = Rectifier::Make(SampleRig(), 648, 483);
+  StereoFrame raw{.left = MakeFrame(Black(648, 483)),
+                  .right = MakeFrame(Black(648, 483)),
+                  .number = 9,
+                  .skew_ns = 1234};
+  raw.truth = std::make_shared<StereoTruth>();
+  const auto pair = rectifier->Rectify(raw, pool_);
+  ASSERT_TRUE(pair.has_value());
+  EXPECT_EQ(pair->number, 9u);
+  EXPECT_EQ(pair->skew_ns, 1234);
+  EXPECT_EQ(pair->left->number, 7u);
+  EXPECT_EQ(pair->left->camera, "21000001");
+  EXPECT_EQ(pair->geometry, rectifier->geometry());
+  EXPECT_EQ(pair->truth, nullptr);
+}
+
+TEST_F(RectifierTest, SaysWhichPictureHasTheWrongSize) {
+  const auto rectifier = Rectifier::Make(SampleRig(), 648, 483);
+  const StereoFrame raw{.left = MakeFrame(Black(648, 483)), .right = MakeFrame(Black(1296, 966))};
+  const auto pair = rectifier->Rectify(raw, pool_);
+  ASSERT_FALSE(pair.has_value());
+  EXPECT_EQ(pair.error().ToString(),
+            "INVALID_ARGUMENT: rectification: camera 21000001 gave 1296 x 966 px, expected 648 x "
+            "483 px; set both cameras to the same size");
+  EXPECT_EQ(rectifier->Rectify({.left = raw.left}, pool_).error().code(),
+            StatusCode::kInvalidArgument);
+}
+
+TEST_F(RectifierTest, RefusesWhatItCannotServe) {
+  const auto other_view = Rectifier::Make(SampleRig(), 648, 400);
+  ASSERT_FALSE(other_view.has_value());
+  EXPECT_EQ(
+      other_view.error().message(),
+      "stereo rig \"sample\" is calibrated for 1296 x 966 px, the pictures have 648 x 400 px; "
+      "use the full picture, binned if needed, or calibrate again");
+  EXPECT_TRUE(Rectifier::Make(SampleRig(), 432, 322).has_value()) << "binned by three";
+
+  StereoRig unequal = SampleRig();
+  unequal.right.width = 1300;
+  EXPECT_THAT(Rectifier::Make(unequal, 1296, 966).error().message(),
+              HasSubstr("only equal cameras"));
+  EXPECT_THAT(Rectifier::Make(SampleRig(), 1296, 966, {.alpha = 1.5}).error().message(),
+              HasSubstr("alpha is 1.5"));
+  StereoRig broken = SampleRig();
+  broken.left.fx_px = 0;
+  EXPECT_EQ(Rectifier::Make(broken, 1296, 966).error().code(), StatusCode::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace vs

@@ -1,0 +1,81 @@
+#include "engine/calibration/remap.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
+
+#include "engine/image/buffer.h"
+#include "engine/image/opencv_view.h"
+
+namespace vs {
+namespace {
+
+using testing::ElementsAre;
+
+std::vector<int> RemapRow(BufferPool& pool, std::vector<uint8_t> in_row,
+                          std::vector<RemapTable::Source> sources, Interpolation interpolation) {
+  GreyImage in(pool, static_cast<int>(in_row.size()), 4);
+  for (int y = 0; y < 4; ++y) std::copy(in_row.begin(), in_row.end(), in.Row(y));
+  const RemapTable table{
+      .width = static_cast<int>(sources.size()), .height = 1, .sources = sources};
+  GreyImage out(pool, table.width, 1);
+  Remap(in, table, interpolation, &out);
+  return {out.Row(0), out.Row(0) + out.width()};
+}
+
+TEST(Remap, InterpolatesBetweenPixels) {
+  BufferPool pool;
+  const std::vector<uint8_t> row = {0, 100, 200, 100, 0};
+  const std::vector<RemapTable::Source> sources = {{1, 1, 0, 0}, {1, 1, 8, 0}, {1, 1, 16, 16}};
+  EXPECT_THAT(RemapRow(pool, row, sources, Interpolation::kNearest), ElementsAre(100, 100, 200));
+  EXPECT_THAT(RemapRow(pool, row, sources, Interpolation::kLinear), ElementsAre(100, 125, 150));
+  // Keys' weights with a = -0.75: a quarter on -0.105, 0.879, 0.262, -0.035 (136.7), half-way
+  // -3/32, 19/32, 19/32, -3/32 (168.75).
+  EXPECT_THAT(RemapRow(pool, row, sources, Interpolation::kCubic), ElementsAre(100, 137, 169));
+}
+
+TEST(Remap, TakesWhatLiesOutsideForBlack) {
+  BufferPool pool;
+  const std::vector<RemapTable::Source> sources = {
+      {-1, 1, 16, 0}, {2, 1, 16, 0}, {0, 3, 0, 16}, {-9, 1, 0, 0}, {32767, -32768, 31, 31}};
+  EXPECT_THAT(RemapRow(pool, {200, 200, 200}, sources, Interpolation::kLinear),
+              ElementsAre(100, 100, 100, 0, 0));
+}
+
+TEST(Remap, AgreesWithOpenCvToOneGreyLevel) {
+  BufferPool pool;
+  std::mt19937 random(3);
+  GreyImage in(pool, 61, 47);
+  for (int y = 0; y < 47; ++y) {
+    for (int x = 0; x < 61; ++x) in.Row(y)[x] = static_cast<uint8_t>(random());
+  }
+  RemapTable table{.width = 50, .height = 40};
+  cv::Mat pixels(40, 50, CV_16SC2);
+  cv::Mat parts(40, 50, CV_16U);
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 50; ++x) {
+      const RemapTable::Source source{
+          static_cast<int16_t>(random() % 70 - 4), static_cast<int16_t>(random() % 56 - 4),
+          static_cast<uint8_t>(random() % 32), static_cast<uint8_t>(random() % 32)};
+      table.sources.push_back(source);
+      pixels.at<cv::Vec2s>(y, x) = {source.x, source.y};
+      parts.at<uint16_t>(y, x) = static_cast<uint16_t>(source.y_part * 32 + source.x_part);
+    }
+  }
+  for (const auto& [ours, theirs] : {std::pair{Interpolation::kLinear, cv::INTER_LINEAR},
+                                     std::pair{Interpolation::kCubic, cv::INTER_CUBIC}}) {
+    GreyImage out(pool, 50, 40);
+    Remap(in, table, ours, &out);
+    cv::Mat expected;
+    cv::remap(CvView(in), expected, pixels, parts, theirs, cv::BORDER_CONSTANT, cv::Scalar(0));
+    EXPECT_LE(cv::norm(CvView(out), expected, cv::NORM_INF), 1);
+  }
+}
+
+}  // namespace
+}  // namespace vs
