@@ -28,11 +28,16 @@ TEST(ValidateRig, AcceptsARealRig) { EXPECT_THAT(WrongFields(SampleRig()), IsEmp
 
 TEST(ValidateRig, NamesEveryWrongFieldOfACamera) {
   StereoRig rig = SampleRig();
-  rig.left = {.width = 15, .height = 20000, .fx_px = 0, .fy_px = -1, .cx_px = 15, .cy_px = -0.5};
+  rig.left.width = 15;
+  rig.left.height = 20000;
+  rig.left.fx_px = 0;
+  rig.left.fy_px = -1;
+  rig.right.cx_px = 1296;
+  rig.right.cy_px = -0.5;
   rig.right.k1 = std::numeric_limits<double>::quiet_NaN();
   rig.right.p2 = std::numeric_limits<double>::infinity();
   EXPECT_THAT(WrongFields(rig), ElementsAre("left.width", "left.height", "left.fx_px", "left.fy_px",
-                                            "left.cx_px", "left.cy_px", "right.k1", "right.p2"));
+                                            "right.cx_px", "right.cy_px", "right.k1", "right.p2"));
   EXPECT_EQ(ValidateRig(rig).message(), "stereo rig \"sample\": 8 fields are wrong");
 }
 
