@@ -50,15 +50,15 @@ constexpr std::array<Range, 14> kRanges = {{{"Limits.connections", 1, 10'000},
 // Gathers all faults of one file, with their lines.
 class Faults final : public google::protobuf::io::ErrorCollector {
  public:
-  explicit Faults(std::string_view name) : name_(name) {}
+  Faults(std::string_view name, std::string_view text) : name_(name), text_(text) {}
 
   void AddError(int line, google::protobuf::io::ColumnNumber /*column*/,
                 const std::string& message) override {
-    Add(line, message);
+    Add(LineOf(message, line), message);
   }
   void AddWarning(int line, google::protobuf::io::ColumnNumber /*column*/,
                   const std::string& message) override {
-    Add(line, message);
+    Add(LineOf(message, line), message);
   }
   // Lines count from 0 here, and from 1 for people; -1 is the file as a whole.
   void Add(int line, const std::string& message) {
@@ -71,7 +71,27 @@ class Faults final : public google::protobuf::io::ErrorCollector {
   }
 
  private:
-  std::string name_;
+  // The parser finds a bad value when it has gone on to the next word, perhaps lines later: go back
+  // to where the last word that it quotes is.
+  int LineOf(const std::string& message, int line) const {
+    const size_t end = message.rfind('"');
+    const size_t begin = end == std::string::npos ? end : message.rfind('"', end - 1);
+    if (begin == std::string::npos || begin == end) return line;
+    const std::string_view quoted = std::string_view(message).substr(begin + 1, end - begin - 1);
+    std::vector<std::string_view> lines;
+    for (size_t start = 0; start <= text_.size() && static_cast<int>(lines.size()) <= line;) {
+      const size_t stop = std::min(text_.find('\n', start), text_.size());
+      lines.push_back(text_.substr(start, stop - start));
+      start = stop + 1;
+    }
+    for (int i = static_cast<int>(lines.size()) - 1; i >= 0; --i) {
+      if (lines[i].find(quoted) != std::string_view::npos) return i;
+    }
+    return line;
+  }
+
+  const std::string name_;
+  const std::string_view text_;
   std::vector<Fault> faults_;
 };
 
@@ -194,7 +214,7 @@ void SetDefaults(Message* message) {
 
 Result<config::ServerConfig> ParseConfig(std::string_view text, std::string_view name,
                                          const std::filesystem::path& folder) {
-  Faults faults(name);
+  Faults faults(name, text);
   TextFormat::ParseInfoTree places;
   TextFormat::Parser parser;
   parser.RecordErrorsTo(&faults);
@@ -218,15 +238,15 @@ Result<config::ServerConfig> ParseConfig(std::string_view text, std::string_view
 }
 
 Result<config::ServerConfig> LoadConfig(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file)) {
+    return NotFound(Str(file.string(), " is a folder, not a configuration file"));
+  }
   std::ifstream stream(file, std::ios::binary);
   if (!stream) {
     return NotFound(
         Str("cannot read the configuration file ", file.string(), ": ", std::strerror(errno)));
   }
   const std::string text((std::istreambuf_iterator<char>(stream)), {});
-  if (stream.bad() || std::filesystem::is_directory(file)) {
-    return NotFound(Str("cannot read the configuration file ", file.string()));
-  }
   if (text.size() > kMaxFileBytes) {
     return InvalidArgument(Str(file.string(), " has ", text.size(), " bytes; at most ",
                                kMaxFileBytes, " are read: is it a configuration file?"));
