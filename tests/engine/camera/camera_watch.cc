@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/base/str.h"
-#include "tests/support/eventually.h"
+#include "tests/support/wait_until.h"
 
 namespace vs::test {
 
@@ -77,7 +77,7 @@ bool CameraWatch::WaitForState(CameraState state) {
 }
 
 bool CameraWatch::WaitFor(const std::function<bool(const CameraStats&)>& condition) {
-  return Eventually([&] { return condition(camera_->Stats()); });
+  return WaitUntil([&] { return condition(camera_->Stats()); });
 }
 
 std::string CameraWatch::Describe() const {

@@ -9,7 +9,7 @@
 #include "engine/camera/gvcp.h"
 #include "tests/engine/camera/camera_watch.h"
 #include "tests/support/child_process.h"
-#include "tests/support/eventually.h"
+#include "tests/support/wait_until.h"
 
 namespace vs::test {
 namespace {
@@ -35,7 +35,7 @@ class GevFakeCamera : public testing::Test {
     auto process = ChildProcess::Start({"arv-fake-gv-camera-0.8", "-i", "127.0.0.1", "-s", "GV01"});
     ASSERT_TRUE(process.has_value()) << process.error().ToString();
     fake_ = std::move(*process);
-    ASSERT_TRUE(Eventually([] { return IdentifyGevCamera("127.0.0.1", 300ms).has_value(); }));
+    ASSERT_TRUE(WaitUntil([] { return IdentifyGevCamera("127.0.0.1", 300ms).has_value(); }));
   }
 
   std::unique_ptr<ChildProcess> fake_;
@@ -146,7 +146,7 @@ TEST_F(GevFakeCamera, ChangesThePictureSizeWhileStreaming) {
   ASSERT_TRUE(watch.Start());
   ASSERT_TRUE(watch.WaitForFrames(5)) << watch.Describe();
   ASSERT_TRUE(watch.camera().SetFeature("Width", int64_t{128}).has_value());
-  EXPECT_TRUE(Eventually([&] { return watch.LastFrame()->image.width() == 128; }))
+  EXPECT_TRUE(WaitUntil([&] { return watch.LastFrame()->image.width() == 128; }))
       << watch.Describe();
   EXPECT_FALSE(watch.OutOfOrder());
   EXPECT_EQ(watch.camera().Stats().reconnects, 0u);
@@ -160,7 +160,7 @@ TEST_F(GevFakeCamera, TakesAPictureForEachSoftwareTrigger) {
   for (uint64_t i = 1; i <= 5; ++i) {
     const Status status = watch.camera().Trigger();
     ASSERT_TRUE(status.ok()) << status.ToString();
-    ASSERT_TRUE(Eventually([&] { return watch.Frames() >= i; })) << watch.Describe();
+    ASSERT_TRUE(WaitUntil([&] { return watch.Frames() >= i; })) << watch.Describe();
   }
   EXPECT_EQ(watch.Frames(), 5u);
   EXPECT_EQ(watch.camera().Stats().reconnects, 0u);
@@ -178,7 +178,7 @@ TEST_F(GevFakeCamera, ComesBackAfterItWasKilledWithItsFeaturesSetAgain) {
   ASSERT_TRUE(watch.Start());
   ASSERT_TRUE(watch.WaitForFrames(5)) << watch.Describe();
   ASSERT_TRUE(watch.camera().SetFeature("Height", int64_t{200}).has_value());
-  ASSERT_TRUE(Eventually([&] { return watch.LastFrame()->image.height() == 200; }));
+  ASSERT_TRUE(WaitUntil([&] { return watch.LastFrame()->image.height() == 200; }));
   for (uint64_t round = 1; round <= 2; ++round) {
     fake_->Kill();
     ASSERT_TRUE(watch.WaitFor([](const CameraStats& stats) {
@@ -257,7 +257,7 @@ TEST_F(GevFakeCamera, IsWaitedForWhenAnotherClientCrashed) {
   auto other =
       ChildProcess::Start({"arv-camera-test-0.8", "-n", "Aravis-Fake-GV01", "--no-packet-socket"});
   ASSERT_TRUE(other.has_value());
-  ASSERT_TRUE(Eventually([] {
+  ASSERT_TRUE(WaitUntil([] {
     return ReadGevRegister("127.0.0.1", kGevControlPrivilege, 300ms).value_or(0) != 0;
   })) << (*other)->Output();
   (*other)->Kill();
