@@ -1,7 +1,6 @@
 // Figures that say how good a depth picture is.
-#include <cmath>
-
 #include "engine/core/block.h"
+#include "engine/stereo/plane_fit.h"
 #include "engine/stereo/quality.h"
 
 namespace vs {
@@ -71,7 +70,7 @@ class DepthQuality final : public Block {
     valid.Set(ValidPercent(*disparity, region));
     if (depth.has_value()) {
       // A region without a plane is an answer, not a failure: the figures are missing.
-      if (const Result<PlaneFit> fit = FitPlane(*depth, region)) {
+      if (const Result<PlaneFit> fit = FitPlane(*depth, region, pool())) {
         plane_rms.Set(fit->rms_m);
         plane_distance.Set(fit->distance_m);
       }

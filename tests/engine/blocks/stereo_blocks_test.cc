@@ -1,0 +1,255 @@
+// The blocks from a raw pair to coloured depth, one by one and as a chain.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "engine/calibration/rig_file.h"
+#include "engine/sim/demo_rig.h"
+#include "engine/sim/ideal_stereo.h"
+#include "tests/support/block_harness.h"
+#include "tests/support/count_allocations.h"
+#include "tests/support/temp_folder.h"
+
+namespace vs {
+namespace {
+
+using test::BlockHarness;
+using testing::HasSubstr;
+
+template <class T>
+std::shared_ptr<const T> Share(T value) {
+  return std::make_shared<const T>(std::move(value));
+}
+
+// One pair of the simulated scene, shrunk to keep the tests quick.
+class StereoBlocks : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    BufferPool pool;
+    pair_ = new std::shared_ptr<const StereoFrame>(
+        Share(sim::IdealStereo({.binning = 2}).Capture(0, 1, pool)));
+  }
+  static void TearDownTestSuite() { delete pair_; }
+  static std::shared_ptr<const StereoFrame> Pair() { return *pair_; }
+  // As a camera gives it: without geometry and truth.
+  static std::shared_ptr<const StereoFrame> RawPair() {
+    StereoFrame raw = **pair_;
+    raw.geometry.reset();
+    raw.truth = nullptr;
+    return Share(raw);
+  }
+
+  std::shared_ptr<const DisparityMap> Match(const std::string& view) {
+    BlockHarness match("SgmStereo");
+    EXPECT_TRUE(match.Set("view", view).ok());
+    match.Input("pair", Pair());
+    EXPECT_TRUE(match.Start().ok());
+    const Status status = match.Run();
+    EXPECT_TRUE(status.ok()) << status.ToString();
+    return std::get<std::shared_ptr<const DisparityMap>>(match.Output("disparity").variant());
+  }
+
+  static std::shared_ptr<const StereoFrame>* pair_;
+};
+std::shared_ptr<const StereoFrame>* StereoBlocks::pair_ = nullptr;
+
+TEST_F(StereoBlocks, MatchAndMeasureTheSimulatedScene) {
+  const auto disparity = Match("left");
+  EXPECT_EQ(disparity->geometry, *Pair()->geometry);
+
+  BlockHarness to_depth("DisparityToDepth");
+  to_depth.Input("disparity", disparity);
+  ASSERT_TRUE(to_depth.Run().ok());
+  const DepthMap& depth = *to_depth.Output<DepthMap>("depth");
+  EXPECT_NEAR(depth.depth_m.Row(440)[100], 64.03F / (disparity->disparity.Row(440)[100] / 16.0F),
+              0.001);
+
+  BlockHarness quality("DepthQuality");
+  for (const auto& [name, value] : {std::pair{"roi_x", int64_t{200}},
+                                    {"roi_y", int64_t{380}},
+                                    {"roi_width", int64_t{200}},
+                                    {"roi_height", int64_t{90}}}) {
+    ASSERT_TRUE(quality.Set(name, value).ok());
+  }
+  quality.Input("disparity", disparity);
+  quality.Input("depth", to_depth.Output("depth"));
+  quality.Input("pair", Pair());
+  ASSERT_TRUE(quality.Run().ok());
+  EXPECT_GT(*quality.Output<double>("valid"), 99);
+  EXPECT_LT(*quality.Output<double>("plane_rms"), 0.002);
+  EXPECT_NEAR(*quality.Output<double>("plane_distance"), 0.767, 0.005);
+  EXPECT_LT(*quality.Output<double>("bad1"), 0.5);
+  EXPECT_LE(*quality.Output<double>("bad2"), *quality.Output<double>("bad1"));
+  EXPECT_LT(*quality.Output<double>("average_error"), 0.15);
+  EXPECT_LT(std::abs(*quality.Output<double>("depth_bias")), 0.1);
+}
+
+TEST_F(StereoBlocks, QualityWithoutDepthAndTruthGivesOnlyTheValidShare) {
+  BlockHarness quality("DepthQuality");
+  quality.Input("disparity", Match("left"));
+  ASSERT_TRUE(quality.Run().ok());
+  EXPECT_GT(*quality.Output<double>("valid"), 85) << "all but the left border";
+  EXPECT_TRUE(quality.Output("plane_rms").empty());
+  EXPECT_TRUE(quality.Output("bad1").empty());
+}
+
+TEST_F(StereoBlocks, BothViewsAgreeAlmostEverywhere) {
+  const auto left = Match("left");
+  const auto right = Match("right");
+  BlockHarness check("LeftRightCheck");
+  check.Input("left", left);
+  check.Input("right", right);
+  ASSERT_TRUE(check.Run().ok());
+  const DisparityMap& checked = *check.Output<DisparityMap>("checked");
+  int before = 0;
+  int after = 0;
+  for (int y = 0; y < left->disparity.height(); ++y) {
+    for (int x = 0; x < left->disparity.width(); ++x) {
+      before += left->disparity.Row(y)[x] != 0 ? 1 : 0;
+      after += checked.disparity.Row(y)[x] != 0 ? 1 : 0;
+      ASSERT_EQ(checked.disparity.Row(y)[x] == 0, checked.reason.Row(y)[x] != 0);
+    }
+  }
+  EXPECT_LT(after, before);
+  EXPECT_GT(after, before * 0.95);
+}
+
+TEST_F(StereoBlocks, MatchingNamesWrongParameters) {
+  BlockHarness match("SgmStereo");
+  match.Input("pair", Pair());
+  ASSERT_TRUE(match.Set("p1", int64_t{40}).ok());
+  ASSERT_TRUE(match.Set("p2", int64_t{20}).ok());
+  ASSERT_TRUE(match.Start().ok());
+  EXPECT_THAT(match.Run().ToString(), HasSubstr("p1: is 40; it must be 0 .. p2, which is 20"));
+  ASSERT_TRUE(match.Set("p2", int64_t{40}).ok());
+  EXPECT_TRUE(match.Run().ok());
+  EXPECT_EQ(match.Set("num_disparities", int64_t{257}).code(), StatusCode::kOutOfRange);
+  EXPECT_FALSE(match.Set("cost", std::string("ssd")).ok());
+}
+
+TEST_F(StereoBlocks, SpeckleFilterLeavesItsInputAlone) {
+  const auto disparity = Match("left");
+  const auto before = disparity->disparity.Row(240)[324];
+  ASSERT_NE(before, kInvalidDisparity);
+  BlockHarness filter("SpeckleFilter");
+  ASSERT_TRUE(filter.Set("max_size", int64_t{1000000}).ok());
+  filter.Input("disparity", disparity);
+  ASSERT_TRUE(filter.Run().ok());
+  EXPECT_EQ(filter.Output<DisparityMap>("filtered")->disparity.Row(240)[324], kInvalidDisparity);
+  EXPECT_EQ(disparity->disparity.Row(240)[324], before);
+}
+
+TEST_F(StereoBlocks, ColoursAskForASensibleRange) {
+  BlockHarness colors("DisparityColors");
+  colors.Input("disparity", Match("left"));
+  ASSERT_TRUE(colors.Set("near_px", 40.0).ok());
+  ASSERT_TRUE(colors.Set("far_px", 40.0).ok());
+  EXPECT_EQ(colors.Run().code(), StatusCode::kInvalidArgument);
+  ASSERT_TRUE(colors.Set("far_px", 20.0).ok());
+  for (const char* name : {"grey", "hue", "turbo", "viridis"}) {
+    ASSERT_TRUE(colors.Set("colors", std::string(name)).ok());
+    ASSERT_TRUE(colors.Run().ok());
+    EXPECT_EQ(colors.Output<ColorImage>("picture")->width(), 648);
+  }
+}
+
+class RectifyBlock : public StereoBlocks {
+ protected:
+  void SetUp() override {
+    block_.environment.data_dir = folder_.path();
+    ASSERT_TRUE(SaveRig(sim::DemoRig(), folder_ / "demo.json").ok());
+    block_.Input("pair", RawPair());
+  }
+  test::TempFolder folder_;
+  BlockHarness block_{"RectifyPair"};
+};
+
+class OneRig final : public RigStore {
+ public:
+  Result<std::shared_ptr<const StereoRig>> Find(const std::string& name) const override {
+    if (name == "cell 3") return Share(sim::DemoRig());
+    return NotFound("there is no calibration \"" + name + "\"; there is: cell 3");
+  }
+};
+
+TEST_F(RectifyBlock, TakesTheRigFromTheStoreOrAFile) {
+  const OneRig store;
+  block_.environment.rigs = &store;
+  ASSERT_TRUE(block_.Set("rig", std::string("cell 3")).ok());
+  ASSERT_TRUE(block_.Start().ok());
+  ASSERT_TRUE(block_.Run().ok());
+  const auto from_store = block_.Output<StereoFrame>("rectified")->geometry;
+  ASSERT_TRUE(from_store.has_value());
+  EXPECT_EQ(from_store->width, 648);
+
+  ASSERT_TRUE(block_.Set("rig", std::string()).ok());
+  ASSERT_TRUE(block_.Set("rig_file", std::string("demo.json")).ok());
+  ASSERT_TRUE(block_.Start().ok());
+  ASSERT_TRUE(block_.Run().ok());
+  EXPECT_EQ(block_.Output<StereoFrame>("rectified")->geometry, from_store);
+}
+
+TEST_F(RectifyBlock, SaysWhichCalibrationIsMissing) {
+  EXPECT_THAT(block_.Start().ToString(), HasSubstr("no calibration is chosen"));
+  ASSERT_TRUE(block_.Set("rig_file", std::string("gone.json")).ok());
+  EXPECT_THAT(block_.Start().ToString(), HasSubstr("gone.json"));
+  ASSERT_TRUE(block_.Set("rig", std::string("cell 4")).ok());
+  EXPECT_THAT(block_.Start().ToString(), HasSubstr("no store of calibrations"));
+  const OneRig store;
+  block_.environment.rigs = &store;
+  EXPECT_THAT(block_.Start().ToString(), HasSubstr("there is: cell 3"));
+}
+
+TEST_F(RectifyBlock, RefusesARectifiedPair) {
+  ASSERT_TRUE(block_.Set("rig_file", std::string("demo.json")).ok());
+  ASSERT_TRUE(block_.Start().ok());
+  block_.Input("pair", Pair());
+  EXPECT_EQ(block_.Run().code(), StatusCode::kFailedPrecondition);
+}
+
+TEST_F(RectifyBlock, FollowsItsParametersLive) {
+  ASSERT_TRUE(block_.Set("rig_file", std::string("demo.json")).ok());
+  ASSERT_TRUE(block_.Start().ok());
+  ASSERT_TRUE(block_.Run().ok());
+  const double narrow = block_.Output<StereoFrame>("rectified")->geometry->focal_px;
+  ASSERT_TRUE(block_.Set("alpha", 1.0).ok());
+  ASSERT_TRUE(block_.Run().ok());
+  EXPECT_LT(block_.Output<StereoFrame>("rectified")->geometry->focal_px, narrow);
+}
+
+// From the second frame on, the chain lives on what it has.
+TEST_F(RectifyBlock, TheWarmChainTakesNoMemory) {
+  ASSERT_TRUE(block_.Set("rig_file", std::string("demo.json")).ok());
+  BlockHarness match("SgmStereo");
+  BlockHarness speckle("SpeckleFilter");
+  BlockHarness depth("DisparityToDepth");
+  BlockHarness quality("DepthQuality");
+  BlockHarness colors("DepthColors");
+  ASSERT_TRUE(block_.Start().ok());
+  ASSERT_TRUE(match.Start().ok());
+  const auto run = [&] {
+    ASSERT_TRUE(block_.Run().ok());
+    match.Input("pair", block_.Output("rectified"));
+    ASSERT_TRUE(match.Run().ok());
+    speckle.Input("disparity", match.Output("disparity"));
+    ASSERT_TRUE(speckle.Run().ok());
+    depth.Input("disparity", speckle.Output("filtered"));
+    ASSERT_TRUE(depth.Run().ok());
+    quality.Input("disparity", speckle.Output("filtered"));
+    quality.Input("depth", depth.Output("depth"));
+    ASSERT_TRUE(quality.Run().ok());
+    colors.Input("depth", depth.Output("depth"));
+    ASSERT_TRUE(colors.Run().ok());
+  };
+  for (int warm_up = 0; warm_up < 4; ++warm_up) run();
+  const uint64_t before = test::Allocations();
+  run();
+  EXPECT_EQ(test::Allocations(), before);
+}
+
+}  // namespace
+}  // namespace vs
