@@ -1,0 +1,50 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "engine/base/clock.h"
+#include "engine/base/mutex.h"
+#include "engine/core/topic.h"
+#include "server/streams/encoder_pool.h"
+#include "server/streams/stream_channel.h"
+
+namespace vs {
+
+// All streams of the server, by name: one channel for each topic that running sequences publish,
+// and for each that somebody waits for. Thread-safe.
+class StreamHub {
+ public:
+  // Both must outlive it.
+  StreamHub(const TopicHub& topics, const Clock& clock, int encoder_threads = 2);
+  ~StreamHub();
+  StreamHub(const StreamHub&) = delete;
+  StreamHub& operator=(const StreamHub&) = delete;
+
+  // The channel of this name, whether there is a topic or not.
+  std::shared_ptr<StreamChannel> Channel(const std::string& name) VS_EXCLUDES(mutex_, following_);
+  // Those that are live, in the order of their names.
+  std::vector<std::shared_ptr<StreamChannel>> Live() VS_EXCLUDES(mutex_, following_);
+
+ private:
+  void WatchTopics() VS_EXCLUDES(mutex_, following_);
+  // Gives all channels their topics, or takes them away.
+  void FollowAll() VS_EXCLUDES(mutex_, following_);
+  std::shared_ptr<StreamChannel> FindOrMake(const std::string& name) VS_EXCLUDES(mutex_);
+  std::vector<std::shared_ptr<StreamChannel>> Channels() VS_EXCLUDES(mutex_);
+
+  const TopicHub& topics_;
+  const Clock& clock_;
+  EncoderPool encoders_;
+  Mutex following_;  // held while channels follow topics, before mutex_
+  Mutex mutex_;
+  CondVar changed_;
+  bool closing_ VS_GUARDED_BY(mutex_) = false;
+  std::map<std::string, std::shared_ptr<StreamChannel>> channels_ VS_GUARDED_BY(mutex_);
+  std::jthread watcher_;  // last: everything it uses exists before it starts
+};
+
+}  // namespace vs
