@@ -211,6 +211,7 @@ Status GevDevice::Receive() {
   const int64_t now_ns = clock_.MonotonicNs();
   if (picture) {
     FramePtr frame = receiver_.Take(std::move(*picture), now_ns);
+    CountPictures();
     if (frame != nullptr) {
       starving_ = false;
       watchdog_.Picture(now_ns, receiver_.period_ns());
@@ -244,11 +245,6 @@ Status GevDevice::Watch(int64_t now_ns) {
   }
   {
     MutexLock lock(stats_mutex_);
-    const GevReceiver::Counters& counters = receiver_.counters();
-    stats_.frames = counters.frames;
-    stats_.incomplete = counters.incomplete;
-    stats_.rejected_stale = counters.rejected_stale;
-    stats_.lost = counters.lost;
     stall_ns_ = watchdog_.quiet_until_ns() + kStallGraceNs;
   }
   const CameraState now = watchdog_.stalled() ? CameraState::kStalled : CameraState::kStreaming;
@@ -296,6 +292,15 @@ Result<FeatureValue> GevDevice::SetFeature(const std::string& name, const Featur
 void GevDevice::NoteSettings() {
   receiver_.SetExposure(session_->ExposureUs());
   watchdog_.SetTriggered(clock_.MonotonicNs(), session_->Triggered());
+}
+
+void GevDevice::CountPictures() {
+  const GevReceiver::Counters& counters = receiver_.counters();
+  MutexLock lock(stats_mutex_);
+  stats_.frames = counters.frames;
+  stats_.incomplete = counters.incomplete;
+  stats_.rejected_stale = counters.rejected_stale;
+  stats_.lost = counters.lost;
 }
 
 void GevDevice::CountStream() {

@@ -68,6 +68,7 @@ class GevDevice {
   Status Watch(int64_t now_ns);
   Status Ask(int64_t now_ns);
   void NoteSettings();
+  void CountPictures();
   void CountStream();
   void KeepHouse(int64_t now_ns);
   void CheckSocketBuffer();

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/base/clock.h"
+#include "engine/base/mutex.h"
 #include "engine/base/str.h"
 #include "engine/camera/gvcp.h"
 
@@ -33,6 +34,14 @@ void SetLocked(ArvDevice* device, bool locked) {
   arv_device_set_integer_feature_value(device, "TLParamsLocked", locked ? 1 : 0, ignored.out());
 }
 
+// One at a time: Aravis' parser of camera descriptions has global state (0.8.26 crashes when two
+// threads open their first cameras at once).
+GObjectPtr<ArvDevice> OpenDevice(GInetAddress* interface, GInetAddress* target, GlibError& error) {
+  static Mutex mutex;
+  MutexLock lock(mutex);
+  return GObjectPtr<ArvDevice>(arv_gv_device_new(interface, target, error.out()));
+}
+
 bool TextIs(const Result<FeatureValue>& value, std::string_view text) {
   if (!value) return false;
   const auto* held = std::get_if<std::string>(&*value);
@@ -48,7 +57,7 @@ Result<std::unique_ptr<GevSession>> GevSession::Open(const std::string& address)
   const GObjectPtr<GInetAddress> interface(g_inet_address_new_from_string(local.c_str()));
   const GObjectPtr<GInetAddress> target(g_inet_address_new_from_string(address.c_str()));
   GlibError error;
-  GObjectPtr<ArvDevice> device(arv_gv_device_new(interface.get(), target.get(), error.out()));
+  GObjectPtr<ArvDevice> device = OpenDevice(interface.get(), target.get(), error);
   if (error || !device) return error.ToStatus().Annotated("opening");
   if (!arv_gv_device_is_controller(ARV_GV_DEVICE(device.get()))) {
     return FailedPrecondition("another program controls the camera");
