@@ -17,14 +17,14 @@ int64_t Scale(int64_t value, int64_t numerator, int64_t denominator) {
 }  // namespace
 
 uint64_t DeviceClock::TicksAt(int64_t instant_ns) const {
-  const auto drift_ns = static_cast<int64_t>(std::floor(instant_ns * (drift_ppm * 1e-6)));
+  const auto drift_ns = static_cast<int64_t>(std::floor(instant_ns * (drift_ppm * 1e-6) + 0.5));
   return static_cast<uint64_t>(Scale(instant_ns + drift_ns + offset_ns, tick_hz, kNsPerSecond));
 }
 
 int64_t DeviceClock::InstantOfTicks(uint64_t ticks) const {
   const int64_t device_ns = Scale(static_cast<int64_t>(ticks), kNsPerSecond, tick_hz) - offset_ns;
   const double rate = drift_ppm * 1e-6;
-  return device_ns - static_cast<int64_t>(std::floor(device_ns * (rate / (1 + rate))));
+  return device_ns - static_cast<int64_t>(std::floor(device_ns * (rate / (1 + rate)) + 0.5));
 }
 
 int64_t DeviceClock::InstantOf(int64_t timestamp_ns) const {

@@ -14,4 +14,8 @@ namespace vs::test {
 // own (tests_support_own_network). Ends with the object.
 Result<std::unique_ptr<ChildProcess>> StartGevSim(const std::vector<std::string>& options = {});
 
+// Sends a command to a gevsim that was started with `--control socket_path` and gives its answer:
+// "left drop 0.01", "unplug", "trigger", "stats" ... (engine/sim/gevsim/rig.h).
+Result<std::string> AskGevSim(const std::string& socket_path, const std::string& command);
+
 }  // namespace vs::test

@@ -59,13 +59,10 @@ void Acquisition::Trigger(TriggerSource source, int64_t instant_ns) {
   if (!TriggerOn(source)) return;
   MutexLock lock(mutex_);
   if (!running_) return;
-  // Too soon after the one before: the sensor is still being read out.
-  const int64_t earliest_ns = last_instant_ns_ + registers_.PeriodNs();
-  if (triggers_.size() >= kTriggersHeld || instant_ns < earliest_ns) {
+  if (triggers_.size() >= kTriggersHeld) {
     ++missed_triggers_;
     return;
   }
-  last_instant_ns_ = instant_ns;
   triggers_.push_back(instant_ns);
   changed_.NotifyAll();
 }
@@ -102,7 +99,6 @@ std::optional<int64_t> Acquisition::NextInstant() {
     due_ns = next_free_run_ns_;
     if (due_ns <= now_ns) {
       next_free_run_ns_ += period_ns;
-      last_instant_ns_ = due_ns;
       return due_ns;
     }
   } else if (running_ && !triggers_.empty()) {
@@ -118,7 +114,10 @@ std::optional<int64_t> Acquisition::NextInstant() {
 
 void Acquisition::TakePicture(int64_t instant_ns) {
   const FaultSettings faults = faults_.Get();
-  if (instant_ns < faults.frozen_until_ns) return;
+  if (instant_ns < faults.frozen_until_ns) {
+    ++missed_triggers_;
+    return;
+  }
   const SensorSettings sensor = registers_.Sensor();
   auto frame = std::make_shared<GvspFrame>();
   frame->block_id = block_id_;

@@ -18,7 +18,9 @@
 
 namespace vs::sim {
 
-// Takes pictures when they are due and sends them, on a thread of its own.
+// Takes pictures when they are due and sends them, on a thread of its own. Unlike a real sensor it
+// needs no time for it: a picture shows its trigger's instant and is sent at once, however long the
+// exposure time, which only makes it brighter.
 class Acquisition {
  public:
   struct Settings {
@@ -41,7 +43,7 @@ class Acquisition {
   // for triggers of this source.
   void Trigger(TriggerSource source, int64_t instant_ns);
 
-  // Triggers that came while the camera was still busy with earlier ones.
+  // Pictures that were not taken: the camera was still busy with earlier ones, or frozen.
   uint64_t MissedTriggers() const { return missed_triggers_; }
 
  private:
@@ -69,7 +71,6 @@ class Acquisition {
   bool running_ VS_GUARDED_BY(mutex_) = false;
   std::deque<int64_t> triggers_ VS_GUARDED_BY(mutex_);
   int64_t next_free_run_ns_ VS_GUARDED_BY(mutex_) = 0;
-  int64_t last_instant_ns_ VS_GUARDED_BY(mutex_) = 0;
   std::thread thread_;
 };
 

@@ -139,8 +139,8 @@ bool Device::OnAction(const ActionCommand& action) {
   return true;
 }
 
-void Device::OnControlLost() {
-  ++control_losses_;
+void Device::OnControlEnded(bool silent) {
+  if (silent) ++silent_clients_;
   acquisition_.Stop();
   registers_.Set(reg::kStreamPort, 0);
   registers_.Set(reg::kStreamDestination, 0);
@@ -162,7 +162,7 @@ std::string Device::Statistics() const {
   return Str("frames ", c.frames, " packets ", c.packets, " resent ", c.resent, " unavailable ",
              c.unavailable, " dropped-packets ", c.dropped_packets, " dropped-frames ",
              c.dropped_frames, " missed-triggers ", acquisition_.MissedTriggers(),
-             " control-losses ", control_losses_);
+             " silent-clients ", silent_clients_);
 }
 
 }  // namespace vs::sim

@@ -48,7 +48,7 @@ class Device final : private GvcpActions {
   void OnWritten(uint32_t address, uint32_t value) override;
   void OnResend(const ResendRequest& request) override;
   bool OnAction(const ActionCommand& action) override;
-  void OnControlLost() override;
+  void OnControlEnded(bool silent) override;
 
   void ServeGvcp();
   void Answer(const UdpSocket& socket);
@@ -64,7 +64,7 @@ class Device final : private GvcpActions {
   GvcpServer gvcp_;
   // The first is the device's own address, the others hear broadcasts.
   std::vector<UdpSocket> sockets_;
-  std::atomic<uint64_t> control_losses_ = 0;
+  std::atomic<uint64_t> silent_clients_ = 0;
   std::atomic<bool> quit_ = false;
   std::thread thread_;
 };

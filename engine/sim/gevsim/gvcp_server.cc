@@ -33,7 +33,7 @@ std::span<const uint8_t> GvcpServer::Handle(std::span<const uint8_t> datagram,
 
 void GvcpServer::Tick(int64_t now_ns) {
   const int64_t timeout_ns = int64_t{registers_.Get(reg::kHeartbeatTimeout)} * 1'000'000;
-  if (privilege_.ExpireSilent(now_ns, timeout_ns)) ControlChanged(true);
+  if (privilege_.ExpireSilent(now_ns, timeout_ns)) ControlChanged(true, true);
 }
 
 GvcpServer::Answer GvcpServer::Dispatch(GvcpCommand command, uint8_t flags,
@@ -96,7 +96,7 @@ GevStatus GvcpServer::WriteRegister(uint32_t address, std::span<const uint8_t> v
   if (address == reg::kControlPrivilege) {
     const bool held_before = privilege_.Held();
     const GevStatus status = privilege_.Request(client, GetU32(value.data()), now_ns);
-    ControlChanged(held_before);
+    ControlChanged(held_before, false);
     return status;
   }
   if (!privilege_.MayWrite(client)) return GevStatus::kAccessDenied;
@@ -156,9 +156,9 @@ void GvcpServer::Resend(uint8_t flags, std::span<const uint8_t> payload) {
                      .last_packet = GetU32(&payload[8]) & 0xffffff});
 }
 
-void GvcpServer::ControlChanged(bool held_before) {
+void GvcpServer::ControlChanged(bool held_before, bool silent) {
   registers_.Set(reg::kControlPrivilege, privilege_.RegisterValue());
-  if (held_before && !privilege_.Held()) actions_.OnControlLost();
+  if (held_before && !privilege_.Held()) actions_.OnControlEnded(silent);
 }
 
 }  // namespace vs::sim

@@ -34,8 +34,8 @@ class GvcpActions {
   virtual void OnResend(const ResendRequest& request) = 0;
   // False if the action was meant for a time that has passed.
   virtual bool OnAction(const ActionCommand& action) = 0;
-  // Nobody controls the device any more.
-  virtual void OnControlLost() = 0;
+  // The controlling client has given up control, or was silent for too long.
+  virtual void OnControlEnded(bool silent) = 0;
 };
 
 // The control protocol of one device: takes datagrams, gives answers. Knows no sockets. For one
@@ -67,7 +67,7 @@ class GvcpServer {
   void Resend(uint8_t flags, std::span<const uint8_t> payload);
   GevStatus WriteRegister(uint32_t address, std::span<const uint8_t> value, const Endpoint& client,
                           int64_t now_ns);
-  void ControlChanged(bool held_before);
+  void ControlChanged(bool held_before, bool silent);
   std::span<uint8_t> Payload() { return std::span(answer_).subspan(kGvcpHeaderBytes); }
 
   Registers& registers_;

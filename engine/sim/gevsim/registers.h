@@ -44,7 +44,7 @@ class Registers {
 
   // The sensor's settings as the registers have them now.
   SensorSettings Sensor() const;
-  // The shortest time from one picture to the next.
+  // From one picture to the next of a free-running camera.
   int64_t PeriodNs() const;
 
  private:

@@ -5,6 +5,7 @@
 #include "engine/base/clock.h"
 #include "engine/base/str.h"
 #include "engine/sim/demo_rig.h"
+#include "engine/sim/gevsim/folder_camera.h"
 #include "engine/sim/scene_camera.h"
 
 namespace vs::sim {
@@ -22,11 +23,26 @@ struct CameraPlan {
 
 Result<std::unique_ptr<PictureSource>> MakePictures(const Options& options,
                                                     const CameraPlan& plan) {
+  if (!options.folder.empty()) {
+    const std::vector<std::string> files = ListPictures(options.folder, plan.pattern);
+    VS_ASSIGN_OR_RETURN(std::unique_ptr<PictureSource> pictures,
+                        FolderCamera::Load(files, options.line_hz, {0, options.seed}));
+    return pictures;
+  }
   return std::make_unique<SceneCamera>(
       SceneCamera::Settings{.rig = options.ideal ? IdealRig() : DemoRig(),
                             .side = plan.side,
                             .sensitivity = plan.sensitivity,
                             .noise = {options.noise, options.seed}});
+}
+
+Status CheckFolder(const Options& options) {
+  const size_t left = ListPictures(options.folder, options.left_pattern).size();
+  const size_t right = ListPictures(options.folder, options.right_pattern).size();
+  if (left > 0 && left == right) return {};
+  return InvalidArgument(Str("--folder ", options.folder, " must hold as many left as right ",
+                             "pictures; ", left, " match ", options.left_pattern, " and ", right,
+                             " match ", options.right_pattern));
 }
 
 Result<std::unique_ptr<Device>> StartCamera(const Options& options, const CameraPlan& plan) {
@@ -45,6 +61,7 @@ Result<std::unique_ptr<Device>> StartCamera(const Options& options, const Camera
 }  // namespace
 
 Result<std::unique_ptr<Rig>> Rig::Start(const Options& options) {
+  if (!options.folder.empty()) VS_RETURN_IF_ERROR(CheckFolder(options));
   std::unique_ptr<Rig> rig(new Rig);
   const CameraPlan plans[] = {
       {Side::kLeft, "left", "21000001", options.left_address, options.left_pattern,
@@ -63,6 +80,14 @@ Result<std::unique_ptr<Rig>> Rig::Start(const Options& options) {
   rig->line_.emplace(period_ns, [&devices = rig->devices_](int64_t instant_ns) {
     for (const NamedDevice& camera : devices) camera.device->OnLine(instant_ns);
   });
+  if (!options.control_path.empty()) {
+    VS_ASSIGN_OR_RETURN(
+        rig->control_,
+        ControlSocket::Listen(options.control_path, [&rig = *rig](std::string_view command) {
+          const auto answer = rig.Command(command);
+          return answer ? *answer : "error: " + answer.error().message();
+        }));
+  }
   return rig;
 }
 

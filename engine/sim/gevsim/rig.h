@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "engine/base/status.h"
+#include "engine/sim/gevsim/control_socket.h"
 #include "engine/sim/gevsim/device.h"
 #include "engine/sim/gevsim/options.h"
 #include "engine/sim/gevsim/trigger_line.h"
 
 namespace vs::sim {
 
-// All of gevsim: the cameras and the wire to their trigger inputs.
+// All of gevsim: the cameras, the wire to their trigger inputs, and the socket for commands.
 class Rig {
  public:
   // Errors say which camera or option is at fault.
@@ -36,7 +37,9 @@ class Rig {
     std::unique_ptr<Device> device;
   };
   std::vector<NamedDevice> devices_;
-  std::optional<TriggerLine> line_;  // last, so that it stops before the cameras go
+  // After the cameras, so that they stop before the cameras go.
+  std::optional<TriggerLine> line_;
+  std::unique_ptr<ControlSocket> control_;
 };
 
 }  // namespace vs::sim
