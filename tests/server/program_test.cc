@@ -1,0 +1,192 @@
+// The program visionserver itself, started as its users start it.
+
+#include <gmock/gmock.h>
+#include <grpcpp/grpcpp.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <fstream>
+#include <regex>
+
+#include "engine/base/str.h"
+#include "tests/support/child_process.h"
+#include "tests/support/raw_call.h"
+#include "tests/support/raw_socket.h"
+#include "tests/support/temp_folder.h"
+#include "tests/support/wait_until.h"
+
+namespace vs {
+namespace {
+
+using test::CallRaw;
+using test::ChildProcess;
+using test::FinishedProcess;
+using test::RawSocket;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kInfo = "/visionserver.v1.SystemService/GetServerInfo";
+
+class ProgramTest : public ::testing::Test {
+ protected:
+  void Write(const std::string& config) { std::ofstream(folder_ / "server.conf") << config; }
+  std::vector<std::string> Command(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> command = {VS_SERVER_PROGRAM, "--config",
+                                        (folder_ / "server.conf").string()};
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  }
+  FinishedProcess RunToEnd(const std::vector<std::string>& more = {}) {
+    return *test::RunProcess(Command(more));
+  }
+  // Up and running; its port is in port_.
+  std::unique_ptr<ChildProcess> Start(std::vector<std::string> command) {
+    auto server = *ChildProcess::Start(command);
+    const auto line = server->WaitForLine("listens on");
+    EXPECT_TRUE(line.has_value()) << server->ErrorOutput();
+    std::smatch match;
+    const std::regex pattern("listens on 127\\.0\\.0\\.1:([0-9]+)");
+    if (line && std::regex_search(*line, match, pattern)) {
+      port_ = static_cast<uint16_t>(std::stoi(match[1]));
+    }
+    return server;
+  }
+  std::shared_ptr<grpc::Channel> Connect() const {
+    return grpc::CreateChannel(Str("ipv4:127.0.0.1:", port_), grpc::InsecureChannelCredentials());
+  }
+
+  static constexpr const char* kPlain =
+      "data_dir: \"data\"\nlisten_address: \"localhost:0\"\nplaintext: true\n";
+  test::TempFolder folder_;
+  uint16_t port_ = 0;
+};
+
+TEST_F(ProgramTest, NamesTheLineOfABadConfiguration) {
+  Write("data_dir: \"data\"\nlisten_address: \"localhost:0\"\nplane_text: true\n");
+  const FinishedProcess result = RunToEnd();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.error_output, HasSubstr("server.conf:3"));
+  EXPECT_THAT(result.error_output, HasSubstr("plane_text"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "data"));
+}
+
+TEST_F(ProgramTest, SaysThatThereIsNoConfiguration) {
+  EXPECT_EQ(RunToEnd().exit_code, 2);
+  EXPECT_THAT(RunToEnd().error_output, HasSubstr("No such file"));
+  Write("");
+  EXPECT_EQ(RunToEnd().exit_code, 2);
+  EXPECT_NE(test::RunProcess({VS_SERVER_PROGRAM})->exit_code, 0);
+}
+
+TEST_F(ProgramTest, ChecksAConfigurationWithoutStarting) {
+  Write(kPlain);
+  const FinishedProcess result = RunToEnd({"--check-config"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.output, HasSubstr("idle_minutes: 30"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "data"));
+}
+
+TEST_F(ProgramTest, RefusesWhatItCannotListenOn) {
+  Write("data_dir: \"data\"\nlisten_address: \"0.0.0.0:0\"\nplaintext: true\n");
+  EXPECT_EQ(RunToEnd().exit_code, 1);
+  EXPECT_THAT(RunToEnd().error_output, HasSubstr("use TLS"));
+  Write("data_dir: \"data\"\nlisten_address: \"somewhere\"\n");
+  EXPECT_THAT(RunToEnd().error_output, HasSubstr("not an address to listen on"));
+  Write("data_dir: \"/proc/nowhere\"\nlisten_address: \"localhost:0\"\n");
+  EXPECT_THAT(RunToEnd().error_output, HasSubstr("data folder"));
+}
+
+TEST_F(ProgramTest, PrintsTheFingerprintAndTheOneTimePassword) {
+  Write("data_dir: \"data\"\nlisten_address: \"localhost:0\"\n");
+  const auto server = Start(Command());
+  const auto fingerprint = server->WaitForLine("fingerprint");
+  const auto password = server->WaitForLine("one-time password");
+  ASSERT_TRUE(fingerprint && password);
+  EXPECT_TRUE(std::regex_search(*fingerprint, std::regex(": ([0-9A-F]{2}:){31}[0-9A-F]{2}$")));
+  std::smatch match;
+  ASSERT_TRUE(std::regex_search(*password, match, std::regex(": ([a-z2-9]{5}-){3}[a-z2-9]{5}$")));
+  // It is in no file.
+  const std::string secret = password->substr(password->rfind(' ') + 1);
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / "data")) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::string content((std::istreambuf_iterator<char>(file)), {});
+    EXPECT_THAT(content, Not(HasSubstr(secret))) << entry.path();
+  }
+  EXPECT_THAT(server->ErrorOutput(), Not(HasSubstr(secret)));
+}
+
+TEST_F(ProgramTest, TwoServersDoNotShareTheirData) {
+  Write(kPlain);
+  const auto first = Start(Command());
+  const FinishedProcess second = RunToEnd();
+  EXPECT_EQ(second.exit_code, 1);
+  EXPECT_THAT(second.error_output, HasSubstr("in use by another server"));
+  EXPECT_TRUE(CallRaw(Connect(), kInfo, "").status.ok());
+}
+
+TEST_F(ProgramTest, EndsGracefullyWhenAsked) {
+  Write(kPlain);
+  const auto server = Start(Command());
+  const std::shared_ptr<grpc::Channel> client = Connect();
+  ASSERT_TRUE(CallRaw(client, kInfo, "").status.ok());
+  server->Signal(SIGTERM);
+  EXPECT_EQ(server->WaitForExit(), 0);
+  EXPECT_EQ(CallRaw(client, kInfo, "").status.error_code(), grpc::StatusCode::UNAVAILABLE);
+  // Its data are free again.
+  const auto next = Start(Command());
+  EXPECT_TRUE(CallRaw(Connect(), kInfo, "").status.ok());
+}
+
+TEST_F(ProgramTest, StartsAgainAfterBeingKilled) {
+  Write(kPlain);
+  for (int i = 0; i < 3; ++i) {
+    const auto server = Start(Command());
+    EXPECT_TRUE(CallRaw(Connect(), kInfo, "").status.ok());
+    server->Kill();
+  }
+}
+
+TEST_F(ProgramTest, RescuesTheAdministrator) {
+  Write(kPlain);
+  Start(Command())->Kill();
+  const auto server = Start(Command({"--rescue-admin"}));
+  EXPECT_TRUE(server->WaitForLine("one-time password").has_value());
+}
+
+TEST_F(ProgramTest, RefusesAServerWithoutItsUsers) {
+  Write(kPlain);
+  Start(Command())->Kill();
+  std::ofstream(folder_ / "data" / "users.db", std::ios::trunc) << "this is no database at all";
+  std::filesystem::remove(folder_ / "data" / "users.db-wal");
+  const FinishedProcess result = RunToEnd();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.error_output, HasSubstr("users.db"));
+}
+
+TEST_F(ProgramTest, ServesOthersAfterAFloodOfIdleConnections) {
+  Write(kPlain);
+  std::vector<std::string> command = {"prlimit", "--nofile=100:100", "--"};
+  for (const std::string& word : Command()) command.push_back(word);
+  const auto server = Start(command);
+  const std::shared_ptr<grpc::Channel> client = Connect();
+  ASSERT_TRUE(CallRaw(client, kInfo, "").status.ok());
+  {
+    std::vector<RawSocket> flood;
+    for (int i = 0; i < 150; ++i) flood.emplace_back(port_);
+    // Who was there before goes on being served.
+    EXPECT_TRUE(CallRaw(client, kInfo, "").status.ok());
+  }
+  // And who comes afterwards.
+  EXPECT_TRUE(test::WaitUntil([&] {
+    grpc::ChannelArguments own_connection;
+    own_connection.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+    return CallRaw(grpc::CreateCustomChannel(Str("ipv4:127.0.0.1:", port_),
+                                             grpc::InsecureChannelCredentials(), own_connection),
+                   kInfo, "")
+        .status.ok();
+  }));
+}
+
+}  // namespace
+}  // namespace vs
