@@ -19,15 +19,15 @@
 #include "engine/sim/gevsim/register_addresses.h"
 #include "engine/sim/scene_camera.h"
 #include "tests/engine/sim/gevsim/gige_client.h"
-#include "tests/support/eventually.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/wait_until.h"
 
 namespace vs::sim {
 namespace {
 
 using std::chrono::milliseconds;
 using test::ChildProcess;
-using test::Eventually;
+using test::WaitUntil;
 
 constexpr milliseconds kNotYet{300};  // long enough to believe that nothing comes
 
@@ -109,7 +109,7 @@ TEST_F(GevSim, OneLinePulseTriggersBothCamerasAtOneInstant) {
   for (int i = 0; i < 20; ++i) left_ticks.insert(left.NextFrame()->ticks);
   for (const uint64_t ticks : left_ticks) EXPECT_EQ(ticks % 20'000'000, 0u);
   // The right camera came later; from then on it has the very same instants.
-  EXPECT_TRUE(Eventually([&] { return left_ticks.contains(right.NextFrame()->ticks); }));
+  EXPECT_TRUE(WaitUntil([&] { return left_ticks.contains(right.NextFrame()->ticks); }));
 }
 
 TEST_F(GevSim, TwoProgramsShareTheLine) {
@@ -219,7 +219,7 @@ TEST_F(GevSim, TakesASinglePictureInSingleFrameMode) {
   EXPECT_EQ(client.Write(reg::kAcquisitionMode, 1), GevStatus::kSuccess);
   EXPECT_EQ(client.Write(reg::kAcquisitionStart, 1), GevStatus::kSuccess);
   EXPECT_TRUE(client.NextFrame().has_value());
-  EXPECT_TRUE(Eventually([&] { return client.Read(reg::kAcquisitionActive) == 0; }));
+  EXPECT_TRUE(WaitUntil([&] { return client.Read(reg::kAcquisitionActive) == 0; }));
   EXPECT_FALSE(client.NextFrame(kNotYet).has_value());
 }
 
@@ -235,7 +235,7 @@ TEST_F(GevSim, RefusesASecondClientUntilTheFirstIsSilent) {
 
   EXPECT_EQ(first->Write(reg::kHeartbeatTimeout, 100), GevStatus::kSuccess);
   first.reset();
-  EXPECT_TRUE(Eventually([&] {
+  EXPECT_TRUE(WaitUntil([&] {
     return second.Write(reg::kControlPrivilege, kPrivilegeControl) == GevStatus::kSuccess;
   }));
   // Nothing is left of what the first had begun.
@@ -278,13 +278,13 @@ TEST_F(GevSim, DoesWrongWhatItIsToldTo) {
   EXPECT_EQ(Command("left drop-frames 1"), "ok");
   EXPECT_FALSE(Pulse(client, kNotYet).has_value());
   EXPECT_TRUE(
-      Eventually([&] { return Command("stats").find("dropped-frames 1") != std::string::npos; }));
+      WaitUntil([&] { return Command("stats").find("dropped-frames 1") != std::string::npos; }));
   EXPECT_EQ(Command("clear"), "ok");
 
   EXPECT_EQ(Command("left freeze 1000"), "ok");
   EXPECT_EQ(Command("trigger"), "ok");
   EXPECT_TRUE(
-      Eventually([&] { return Command("stats").find("missed-triggers 1") != std::string::npos; }));
+      WaitUntil([&] { return Command("stats").find("missed-triggers 1") != std::string::npos; }));
   EXPECT_EQ(client.Read(reg::kWidth), static_cast<uint32_t>(kWidth));  // only pictures stop
   EXPECT_EQ(Command("clear"), "ok");
 
