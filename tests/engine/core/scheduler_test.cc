@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "engine/base/mailbox.h"
 #include "engine/base/mutex.h"
 #include "tests/engine/core/scheduler_fixture.h"
 
@@ -23,6 +24,34 @@ SequenceSpec DiamondSpec(const std::string& id) {
                       Wire("left.sum", "join.a"), Wire("right.sum", "join.b")};
   return spec;
 }
+
+// A camera as the scheduler sees it: another thread puts pictures into its mailbox.
+class LiveSource final : public Block {
+ public:
+  static LiveSource* started;  // the one that runs
+
+  Out<int64_t> value{this, "value", "What was put."};
+
+  LiveSource() {
+    box.OnAvailable([this] { Wake(); });
+  }
+  Status Start() override {
+    started = this;
+    return Status();
+  }
+  bool Ready() override { return box.Available(); }
+  Status Run() override {
+    value.Set(box.TryTake().value());
+    return Status();
+  }
+  void Stop() override { box.Close(); }
+  uint64_t Dropped() const override { return box.Dropped(); }
+
+  Mailbox<int64_t> box;
+};
+LiveSource* LiveSource::started = nullptr;
+
+VS_REGISTER_BLOCK(LiveSource, {.category = "Test", .doc = "Gives what a test puts."});
 
 // Who ran for which frame, in the order of running.
 class Journal {
@@ -195,6 +224,35 @@ TEST_F(SchedulerTest, LetsNoMoreFramesInThanAllowed) {
   EXPECT_EQ(run->Stats().frames_in_flight, 3);
   release.Open();
   ASSERT_TRUE(WaitForFrames(*run, 10));
+}
+
+TEST_F(SchedulerTest, TakesTheNewestPictureAndCountsThoseItHadNoTimeFor) {
+  MakeWorkers(2);
+  Gate busy;
+  Gate release;
+  std::vector<int64_t> seen;
+  ProbeOf("slow").run = [&](const StepRun& run) {
+    busy.Open();
+    release.Wait();
+    seen.push_back(run.a);
+    return Status();
+  };
+  SequenceSpec spec;
+  spec.id = "live";
+  spec.max_frames_in_flight = 1;
+  spec.blocks = {{"camera", "LiveSource", {}}, StepSpec("slow")};
+  spec.connections = {Wire("camera.value", "slow.a")};
+  const auto run = Start(spec);
+  LiveSource::started->box.Put(1);
+  ASSERT_TRUE(busy.Wait());
+  for (int64_t picture = 2; picture <= 6; ++picture) LiveSource::started->box.Put(picture);
+  EXPECT_EQ(run->Stats().dropped, 4u);
+  release.Open();
+  ASSERT_TRUE(WaitForFrames(*run, 2));
+  run->Stop();
+  EXPECT_THAT(seen, ElementsAre(1, 6));
+  EXPECT_EQ(run->Stats().frames, 2u);
+  EXPECT_EQ(run->Stats().dropped, 4u);
 }
 
 TEST_F(SchedulerTest, AsksASourceAgainWhenItCalls) {
