@@ -63,10 +63,8 @@ class Checker {
   }
 
   void CheckHead() {
-    if (!IsSequenceId(spec_.id)) {
-      Add("sequence", Str("the id must be a-z, 0-9 and _, begin with a letter and have at most 63 "
-                          "characters, not ",
-                          Quoted(spec_.id)));
+    if (const Status status = CheckSequenceId(spec_.id); !status.ok()) {
+      Add("sequence", "the id " + status.message());
     }
     if (spec_.description.size() > kMaxDescriptionBytes) {
       Add("sequence", Str("the description must have at most ", kMaxDescriptionBytes,
@@ -101,13 +99,10 @@ class Checker {
 
   void CheckBlock(size_t index) {
     const BlockSpec& block = spec_.blocks[index];
-    const bool usable = IsSequenceId(block.id);
+    const Status id_status = CheckSequenceId(block.id);
+    const bool usable = id_status.ok();
     const std::string subject = usable ? block.id : Str("blocks[", index, "]");
-    if (!usable) {
-      Add(subject, Str("a block's id must be a-z, 0-9 and _, begin with a letter and have at most "
-                       "63 characters, not ",
-                       Quoted(block.id)));
-    }
+    if (!usable) Add(subject, "a block's id " + id_status.message());
     const Block* type = Describe(block.type);
     if (type == nullptr) Add(subject, Str("there is no block type ", Quoted(block.type)));
     if (usable && !index_.emplace(block.id, nodes_.size()).second) {

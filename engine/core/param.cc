@@ -93,9 +93,12 @@ Status ParamBase::Check(const ParamValue& value) const {
     return InvalidArgument(Str(info_.name, " must be ", TypeName(info_.initial), ", not ",
                                TypeName(value), " (", Shown(value), ")"));
   }
-  if (std::holds_alternative<bool>(value)) return Status();
-  if (const auto* text = std::get_if<std::string>(&value)) return CheckText(info_, *text);
-  return CheckNumber(info_, value);
+  if (const auto* text = std::get_if<std::string>(&value)) {
+    VS_RETURN_IF_ERROR(CheckText(info_, *text));
+  } else if (!std::holds_alternative<bool>(value)) {
+    VS_RETURN_IF_ERROR(CheckNumber(info_, value));
+  }
+  return CheckFurther(value).Annotated(info_.name);
 }
 
 Status ParamBase::Set(const ParamValue& value) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -49,6 +50,8 @@ class ParamBase {
   Status Set(const ParamValue& value);
 
  private:
+  // Both get a value of the right type and range.
+  virtual Status CheckFurther(const ParamValue& value) const = 0;
   virtual void Assign(const ParamValue& checked) = 0;
 
   ParamInfo info_;
@@ -64,6 +67,9 @@ struct ParamOptions {
   bool operator_editable = false;
   bool live = true;
   std::string doc;
+  // Refuses values of the right type and range that make no sense all the same: a malformed name
+  // or formula. Of the value alone, so that a sequence can be checked before it runs.
+  std::function<Status(const T&)> check;
 };
 
 // A parameter declared as a member of a block; T is bool, int, double or std::string. A change
@@ -76,7 +82,9 @@ class Param final : public ParamBase {
 
  public:
   Param(Block* owner, std::string name, ParamOptions<T> options)
-      : ParamBase(owner, Describe(std::move(name), options)), value_(std::move(options.initial)) {}
+      : ParamBase(owner, Describe(std::move(name), options)),
+        check_(std::move(options.check)),
+        value_(std::move(options.initial)) {}
 
   const T& operator*() const { return value_; }
   const T* operator->() const { return &value_; }
@@ -99,15 +107,21 @@ class Param final : public ParamBase {
     return info;
   }
 
-  void Assign(const ParamValue& checked) override {
+  Status CheckFurther(const ParamValue& value) const override {
+    return check_ ? check_(Held(value)) : Status();
+  }
+  void Assign(const ParamValue& checked) override { value_ = Held(checked); }
+
+  static T Held(const ParamValue& value) {
     if constexpr (std::is_same_v<T, double>) {
-      const auto* integer = std::get_if<int64_t>(&checked);
-      value_ = integer != nullptr ? static_cast<double>(*integer) : std::get<double>(checked);
+      const auto* integer = std::get_if<int64_t>(&value);
+      return integer != nullptr ? static_cast<double>(*integer) : std::get<double>(value);
     } else {
-      value_ = static_cast<T>(std::get<Stored>(checked));
+      return static_cast<T>(std::get<Stored>(value));
     }
   }
 
+  std::function<Status(const T&)> check_;
   T value_;
 };
 

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/base/str.h"
+
 namespace vs {
 
 bool IsSequenceId(std::string_view text) {
@@ -12,6 +14,13 @@ bool IsSequenceId(std::string_view text) {
   return !text.empty() && text.size() <= 63 && lower(text[0]) &&
          std::all_of(text.begin(), text.end(),
                      [&lower](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+Status CheckSequenceId(const std::string& text) {
+  if (IsSequenceId(text)) return Status();
+  return InvalidArgument(
+      Str("must be a-z, 0-9 and _, begin with a letter and have at most 63 characters, not ",
+          Quoted(text)));
 }
 
 std::string ToJson(const SequenceSpec& spec) {

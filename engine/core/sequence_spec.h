@@ -46,6 +46,8 @@ struct SequenceSpec {
 
 // "stereo_depth": [a-z][a-z0-9_]*, at most 63 characters.
 bool IsSequenceId(std::string_view text);
+// The same as a check of a parameter that is such a name.
+Status CheckSequenceId(const std::string& text);
 
 // Canonical JSON: keys sorted, blocks and connections sorted, two spaces, numbers in their shortest
 // exact form. Equal sequences give equal text, so a diff shows what changed. Numbers must be finite

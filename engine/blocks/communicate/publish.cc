@@ -14,18 +14,13 @@ class Publish final : public Block {
                             "stream",
                             {.initial = "output",
                              .live = false,
-                             .doc = "Name of the stream; clients find it as sequence/stream."}};
+                             .doc = "Name of the stream; clients find it as sequence/stream.",
+                             .check = CheckSequenceId}};
 
   Status Start() override {
     TopicHub* topics = environment().topics;
     if (topics == nullptr) {
       return FailedPrecondition("streams need a server: run this sequence on one");
-    }
-    if (!IsSequenceId(*stream)) {
-      return InvalidArgument(
-          Str("stream must be a-z, 0-9 and _, begin with a letter and have at "
-              "most 63 characters, not ",
-              Quoted(*stream)));
     }
     VS_ASSIGN_OR_RETURN(
         topic_, topics->Open(Str(run().sequence, "/", *stream), std::string(value.source_type())));

@@ -46,12 +46,6 @@ class LogResult final : public Block {
     for (const auto& [input, name] : Columns()) {
       if (!input->connected()) continue;
       if (!IsColumnType(input->source_type())) return WrongType(*input, input->source_type());
-      if (!IsSequenceId(**name)) {
-        return InvalidArgument(Str(name->info().name,
-                                   " must be a-z, 0-9 and _, begin with a letter and have at most "
-                                   "63 characters, not ",
-                                   Quoted(**name)));
-      }
       if (!names.insert(**name).second) {
         return InvalidArgument(Str("two values are called ", **name, ": rename one"));
       }
@@ -93,7 +87,8 @@ class LogResult final : public Block {
   static ParamOptions<std::string> Name(const std::string& port) {
     return {.initial = port,
             .live = false,
-            .doc = Str("The name under which value ", port, " is stored.")};
+            .doc = Str("The name under which value ", port, " is stored."),
+            .check = CheckSequenceId};
   }
 
   std::array<NamedInput, 8> Columns() const {

@@ -29,16 +29,18 @@ std::string FileTime(int64_t utc_ns) {
 }
 
 // Relative, of names that are neither hidden nor special.
-bool IsPlainFolder(const std::string& text) {
+Status CheckFolder(const std::string& text) {
   const std::filesystem::path path(text);
-  if (text.empty() || path.is_absolute()) return false;
-  return std::all_of(path.begin(), path.end(), [](const std::filesystem::path& part) {
+  const bool plain = std::all_of(path.begin(), path.end(), [](const std::filesystem::path& part) {
     const std::string& name = part.native();
     return !name.empty() && name[0] != '.' &&
            name.find_first_not_of(
                "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
                "0123456789._-") == std::string::npos;
   });
+  if (plain && !path.empty()) return Status();
+  return InvalidArgument(
+      Str("must be a path below the data folder, such as images/line1, not ", Quoted(text)));
 }
 
 // The usual convention of stereo data sets: disparity in 1/256 px, 0 where there is none.
@@ -83,7 +85,8 @@ class SaveImages final : public Block {
                             {.initial = "images",
                              .live = false,
                              .doc = "Folder below the server's data folder; it is made if it does "
-                                    "not exist."}};
+                                    "not exist.",
+                             .check = CheckFolder}};
   Param<std::string> policy{this,
                             "policy",
                             {.initial = "all",
@@ -128,12 +131,6 @@ class SaveImages final : public Block {
   Status Start() override {
     if (environment().data_dir.empty()) {
       return FailedPrecondition("pictures need a data folder: run this sequence on a server");
-    }
-    if (!IsPlainFolder(*folder)) {
-      return InvalidArgument(
-          Str("folder must be a path below the data folder, such as "
-              "images/line1, not ",
-              Quoted(*folder)));
     }
     if (!CanSave(picture.source_type())) return WrongType(picture.source_type());
     VS_RETURN_IF_ERROR(CheckPolicy());

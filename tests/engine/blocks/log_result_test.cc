@@ -97,10 +97,8 @@ TEST_F(LogResult, RefusesNamesThatCannotBeColumns) {
   block_.Input("b", 2.0);
   ASSERT_TRUE(block_.Set("name_b", std::string("a")).ok());
   EXPECT_EQ(block_.Start(), InvalidArgument("two values are called a: rename one"));
-  ASSERT_TRUE(block_.Set("name_b", std::string("drop table")).ok());
-  EXPECT_EQ(block_.Start().code(), StatusCode::kInvalidArgument);
-  ASSERT_TRUE(block_.Set("name_b", std::string("")).ok());
-  EXPECT_EQ(block_.Start().code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(block_.Set("name_b", std::string("drop table")).code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(block_.Set("name_b", std::string()).code(), StatusCode::kInvalidArgument);
 }
 
 TEST_F(LogResult, RefusesValuesThatAreNoMeasurement) {

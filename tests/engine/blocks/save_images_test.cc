@@ -155,8 +155,7 @@ TEST_F(SaveImages, SaysThatItIsFull) {
 TEST_F(SaveImages, StaysInsideTheDataFolder) {
   block_.Input("picture", FrameOf(pool_, 1));
   for (const char* bad : {"", "/etc", "..", "a/../..", ".hidden", "a//../b", "a b", "~root"}) {
-    ASSERT_TRUE(block_.Set("folder", std::string(bad)).ok());
-    EXPECT_EQ(block_.Start().code(), StatusCode::kInvalidArgument) << bad;
+    EXPECT_EQ(block_.Set("folder", std::string(bad)).code(), StatusCode::kInvalidArgument) << bad;
   }
   ASSERT_TRUE(block_.Set("folder", std::string("line_1/camera-2/v1.0")).ok());
   EXPECT_TRUE(block_.Start().ok());
