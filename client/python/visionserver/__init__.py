@@ -16,6 +16,7 @@ import array
 import hashlib
 import importlib
 import ipaddress
+import socket
 import ssl
 import sys
 
@@ -243,7 +244,7 @@ def _pinned(host, port, fingerprint):
     context = ssl.create_default_context(cadata=pem)
     context.check_hostname = False
     context.verify_flags |= ssl.VERIFY_X509_PARTIAL_CHAIN
-    with ssl.socket.create_connection((host, port), timeout=5) as plain:
+    with socket.create_connection((host, port), timeout=5) as plain:
         with context.wrap_socket(plain) as secure:
             names = secure.getpeercert().get("subjectAltName", ())
     return pem.encode(), names[0][1] if names else None
