@@ -63,10 +63,10 @@ chmod 700 "$data"
 [[ -e $data/rigs/demo.json ]] || cp deploy/demo/rig.json "$data/rigs/demo.json"
 sed "s|@DATA@|$data|; s|@PORT@|$port|" deploy/demo/server.conf >"$work/server.conf"
 
-"$bin/engine/sim/gevsim" --fps "$fps" ${folder:+--folder "$folder"} \
+"$bin/engine/sim/gevsim/gevsim" --fps "$fps" ${folder:+--folder "$folder"} \
   >"$work/cameras" 2>"$work/cameras.err" &
 children+=($!)
-await "$work/cameras" '21000002' $! 'the simulated rig'
+await "$work/cameras" '^gevsim ready' $! 'the simulated rig'
 
 "$bin/server/visionserver" --config "$work/server.conf" --report 1 \
   >"$work/server" 2>"$work/server.err" &

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/recycler.h"
 #include "engine/sim/demo_rig.h"
 #include "engine/sim/scene_camera.h"
 #include "engine/sim/truth.h"
@@ -27,7 +28,7 @@ struct IdealStereo::State {
 
   FramePtr Take(SceneCamera& camera, const char* name, int64_t instant_ns, uint64_t number,
                 BufferPool& pool) const {
-    auto frame = std::make_shared<Frame>();
+    auto frame = std::allocate_shared<Frame>(frame_memory);
     frame->image = GreyImage(pool, sensor.width, sensor.height);
     camera.Capture(instant_ns, sensor, frame->image);
     frame->camera = name;
@@ -44,6 +45,7 @@ struct IdealStereo::State {
   SceneCamera left;
   SceneCamera right;
   TruthRenderer truth;
+  Recycler<Frame> frame_memory;
 };
 
 IdealStereo::IdealStereo(const IdealStereoSettings& settings)

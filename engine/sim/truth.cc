@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "engine/base/recycler.h"
 #include "engine/sim/ray_cast.h"
 #include "engine/sim/view.h"
 
@@ -36,6 +37,7 @@ struct TruthRenderer::State {
   std::vector<float> depth_m;
   std::vector<uint8_t> visible;
   std::vector<uint8_t> surface;  // scratch row
+  Recycler<StereoTruth> truth_memory;
 
   size_t Index(int x, int y) const { return static_cast<size_t>(y) * geometry.width + x; }
 
@@ -165,8 +167,8 @@ SceneTruth TruthRenderer::At(int64_t instant_ns, BufferPool& pool) {
     }
   }
   SceneTruth truth;
-  truth.stereo =
-      std::make_shared<StereoTruth>(StereoTruth{std::move(disparity), std::move(visible)});
+  truth.stereo = std::allocate_shared<StereoTruth>(
+      s.truth_memory, StereoTruth{std::move(disparity), std::move(visible)});
   truth.depth_m = std::move(depth);
   return truth;
 }
