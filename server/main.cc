@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <string>
 
@@ -66,21 +67,52 @@ void Greet(const Server& server) {
   std::fflush(stdout);
 }
 
+// One line for each sequence that has completed a frame: "stereo_depth: 9.8 fps, 85 ms latency, 0
+// dropped".
+void Report(Server& server) {
+  for (const SequenceStatus& status : server.vision().sequences().List()) {
+    const RunStats& stats = status.stats;
+    if (stats.frames == 0) continue;
+    std::printf("%s: %.1f fps, %.0f ms latency, %llu dropped\n", status.id.c_str(),
+                stats.frames_per_second, static_cast<double>(stats.latency_p50_ns) / 1e6,
+                static_cast<unsigned long long>(stats.dropped));
+  }
+  std::fflush(stdout);
+}
+
+// Until one of `signals` comes; reports meanwhile if that is asked for.
+void WaitForSignal(const sigset_t& signals, int report_s, Server& server) {
+  while (true) {
+    int signal = 0;
+    if (report_s == 0) {
+      if (sigwait(&signals, &signal) == 0) return;
+      continue;
+    }
+    const timespec period{.tv_sec = report_s, .tv_nsec = 0};
+    if (sigtimedwait(&signals, nullptr, &period) >= 0) return;
+    Report(server);
+  }
+}
+
 int Fail(const Status& status, int exit_code) {
   std::fprintf(stderr, "visionserver: %s\n", status.ToString().c_str());
   return exit_code;
 }
 
-int Run(int argument_count, char** arguments) {
+int RunProgram(int argument_count, char** arguments) {
   CLI::App app("VisionServer: networked 3D machine vision", "visionserver");
   std::string config_file;
   bool check_config = false;
   bool rescue_admin = false;
+  int report_s = 0;
   app.add_option("--config", config_file, "The configuration file")->required();
   app.add_flag("--check-config", check_config,
                "Only check the configuration and print it with all defaults");
   app.add_flag("--rescue-admin", rescue_admin,
                "Give the user admin a new one-time password and print it");
+  app.add_option("--report", report_s,
+                 "Print the rate of each running sequence every so many seconds")
+      ->check(CLI::Range(1, 3600));
   app.set_version_flag("--version", kVersion);
   CLI11_PARSE(app, argument_count, arguments);
 
@@ -107,8 +139,7 @@ int Run(int argument_count, char** arguments) {
   if (!server) return Fail(server.error(), kExitFailure);
   Greet(**server);
 
-  int signal = 0;
-  sigwait(&signals, &signal);
+  WaitForSignal(signals, report_s, **server);
   LogInfo("server", "shutting down; once more to do so at once");
   // Whoever asks twice does not want to wait.
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
@@ -121,7 +152,7 @@ int Run(int argument_count, char** arguments) {
 
 int main(int argument_count, char** arguments) {
   try {
-    return vs::Run(argument_count, arguments);
+    return vs::RunProgram(argument_count, arguments);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "visionserver: %s\n", error.what());
     return vs::kExitFailure;

@@ -69,6 +69,7 @@ Result<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
   VS_RETURN_IF_ERROR(server->OpenStores());
   server->RegisterServices();
   VS_RETURN_IF_ERROR(server->StartNetwork());
+  server->vision_->StartSequences();
   return server;
 }
 
@@ -93,6 +94,7 @@ Status Server::OpenStores() {
   } else {
     VS_ASSIGN_OR_RETURN(one_time_password_, access_->accounts().FirstPassword());
   }
+  VS_ASSIGN_OR_RETURN(vision_, Vision::Open(config_, folder_.path(), system_clock_));
   return Status();
 }
 
@@ -107,6 +109,7 @@ void Server::RegisterServices() {
   user_service_->Register(router_);
   system_service_->Register(router_);
   health_service_->Register(router_);
+  vision_->Register(router_);
   if (config_.profile() == config::ServerConfig::DEVELOPMENT) {
     reflection_service_ = std::make_unique<ReflectionService>();
     reflection_service_->Register(router_);
@@ -149,6 +152,7 @@ void Server::Drain() {
     std::this_thread::sleep_for(milliseconds(10));
   }
   grpc_->Stop(kLastBytes);
+  vision_->StopSequences();
 }
 
 std::string Server::address() const {

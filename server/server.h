@@ -22,6 +22,7 @@
 #include "server/services/system_service.h"
 #include "server/services/user_service.h"
 #include "server/transport/grpc_server.h"
+#include "server/vision.h"
 
 namespace vs {
 
@@ -61,6 +62,7 @@ class Server {
   AlarmBoard& alarms() { return alarms_; }
   const Dispatcher& dispatcher() const { return *dispatcher_; }
   GrpcServer& grpc() { return *grpc_; }
+  Vision& vision() { return *vision_; }
 
  private:
   Server(const ServerOptions& options, DataFolder folder);
@@ -80,6 +82,7 @@ class Server {
   HealthBoard health_;
   AlarmBoard alarms_;
   std::unique_ptr<AccessControl> access_;
+  std::unique_ptr<Vision> vision_;
 
   // What answers calls. They go before the parts above.
   std::unique_ptr<SessionService> session_service_;

@@ -13,6 +13,7 @@ namespace vs {
 namespace {
 
 constexpr std::chrono::milliseconds kAskTime{150};
+constexpr std::string_view kNamedScheme = "camera";
 
 }  // namespace
 
@@ -62,7 +63,25 @@ class CameraHub::Closer {
 CameraHub::CameraHub() : closer_(std::make_shared<Closer>()) {}
 CameraHub::~CameraHub() = default;
 
-Result<std::shared_ptr<CameraSource>> CameraHub::Acquire(const CameraUri& uri) {
+Status CameraHub::Name(const std::string& name, const CameraUri& uri) {
+  MutexLock lock(mutex_);
+  if (names_.try_emplace(name, uri).second) return Status();
+  return InvalidArgument(Str("two cameras are called ", Quoted(name)));
+}
+
+Result<CameraUri> CameraHub::Resolve(const CameraUri& uri) const {
+  if (uri.scheme != kNamedScheme) return uri;
+  MutexLock lock(mutex_);
+  const auto found = names_.find(uri.address);
+  if (found != names_.end()) return found->second;
+  std::string names;
+  for (const auto& [name, named] : names_) names += (names.empty() ? "" : ", ") + name;
+  return NotFound(Str("there is no camera called ", Quoted(uri.address),
+                      "; there are: ", names.empty() ? "none" : names));
+}
+
+Result<std::shared_ptr<CameraSource>> CameraHub::Acquire(const CameraUri& asked) {
+  VS_ASSIGN_OR_RETURN(const CameraUri uri, Resolve(asked));
   MutexLock lock(mutex_);
   std::erase_if(open_, [](const Open& open) { return open.camera.expired(); });
   const auto found = std::ranges::find_if(open_, [&uri](const Open& open) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,11 +27,18 @@ class CameraHub {
   CameraHub();
   ~CameraHub();  // waits until the cameras that were let go are closed
 
-  // The camera of this URI, opened when the first user needs it and closed when the last one lets
-  // go. Each user has its own Start and Stop; all see the same pictures. A URI without options also
-  // means a camera that is open with options. Errors: NOT_FOUND (no such driver), INVALID_ARGUMENT
-  // (bad options), FAILED_PRECONDITION (already open with other options). Recorded sources are not
-  // shared: each user reads the files from the start.
+  // From now on "camera:NAME" means this camera, with its options. INVALID_ARGUMENT when the name
+  // is taken.
+  Status Name(const std::string& name, const CameraUri& uri);
+  // The camera that "camera:NAME" means, any other URI as it is. NOT_FOUND names the cameras that
+  // there are.
+  Result<CameraUri> Resolve(const CameraUri& uri) const;
+
+  // The camera of this URI (see Resolve), opened when the first user needs it and closed when the
+  // last one lets go. Each user has its own Start and Stop; all see the same pictures. A URI
+  // without options also means a camera that is open with options. Errors: NOT_FOUND (no such
+  // driver), INVALID_ARGUMENT (bad options), FAILED_PRECONDITION (already open with other options).
+  // Recorded sources are not shared: each user reads the files from the start.
   Result<std::shared_ptr<CameraSource>> Acquire(const CameraUri& uri);
 
   // The cameras that somebody uses now.
@@ -50,6 +58,7 @@ class CameraHub {
   const std::shared_ptr<Closer> closer_;
   mutable Mutex mutex_;
   std::vector<Open> open_ VS_GUARDED_BY(mutex_);
+  std::map<std::string, CameraUri> names_ VS_GUARDED_BY(mutex_);
 };
 
 }  // namespace vs

@@ -15,6 +15,7 @@ namespace vs {
 //   gev-ip:192.168.1.20     GigE Vision camera by address
 //   sim:demo#left           the simulated scene, one of its two cameras
 //   file:/data/run7?pattern=*_left.png&loop=true&fps=30
+//   camera:left             the camera of this name in the server's configuration
 // A key that starts with a capital is a feature of the camera (ExposureTimeAbs=5000), set in the
 // written order before it streams; any other key is an option of the driver. A character that would
 // be read otherwise ('%' anywhere, '?' in an address, '&' in a value) is written as '%' and two hex

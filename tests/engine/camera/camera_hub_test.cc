@@ -172,5 +172,19 @@ TEST(CameraHub, StandsUsersThatComeAndGoWhilePicturesFlow) {
   EXPECT_EQ(served, 400);
 }
 
+TEST(CameraHub, FindsACameraByTheNameThatTheConfigurationGaveIt) {
+  CameraHub hub;
+  ASSERT_TRUE(hub.Name("left", Uri("script:a?Gain=3")).ok());
+  EXPECT_FALSE(hub.Name("left", Uri("script:b")).ok());
+  const auto named = hub.Acquire(Uri("camera:left")).value();
+  EXPECT_EQ(1, alive);
+  const auto same = hub.Acquire(Uri("script:a?Gain=3")).value();
+  EXPECT_EQ(1, alive);
+  EXPECT_EQ("script:a?Gain=3", hub.List().at(0).uri);
+  const Status unknown = hub.Acquire(Uri("camera:right")).error();
+  EXPECT_EQ(StatusCode::kNotFound, unknown.code());
+  EXPECT_THAT(unknown.message(), HasSubstr("there are: left"));
+}
+
 }  // namespace
 }  // namespace vs::test

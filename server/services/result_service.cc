@@ -1,0 +1,203 @@
+#include "server/services/result_service.h"
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "engine/base/str.h"
+#include "server/convert/result.h"
+#include "server/convert/time.h"
+#include "server/results/result_csv.h"
+#include "server/services/loading_source.h"
+
+namespace vs {
+namespace {
+
+namespace pb = visionserver::v1;
+
+constexpr uint32_t kDefaultPage = 100;
+constexpr uint32_t kMaxPage = 1000;
+constexpr uint32_t kDefaultRows = 1000;
+constexpr uint32_t kMaxRows = 10'000;
+constexpr int64_t kMaxQueryNs = 30'000'000'000;
+constexpr size_t kRowsPerLoad = 500;
+
+// A page token is the number of the last result of the page before.
+Result<std::optional<uint64_t>> ParsePageToken(const std::string& token) {
+  if (token.empty()) return std::optional<uint64_t>();
+  uint64_t number = 0;
+  const char* end = token.data() + token.size();
+  const auto parsed = std::from_chars(token.data(), end, number);
+  if (parsed.ec != std::errc() || parsed.ptr != end) {
+    return InvalidArgument(Str(Quoted(token), " is not a page_token of this method"));
+  }
+  return std::optional(number);
+}
+
+Result<SqlLimits> LimitsOf(const pb::QueryResultsRequest& request) {
+  SqlLimits limits;
+  limits.max_rows = request.max_rows() == 0 ? kDefaultRows : request.max_rows();
+  if (limits.max_rows > kMaxRows) {
+    return InvalidArgument(Str("max_rows must be 1 to ", kMaxRows, ", or 0 for ", kDefaultRows));
+  }
+  if (request.has_timeout()) {
+    const int64_t timeout_ns = ToNs(request.timeout());
+    if (timeout_ns <= 0 || timeout_ns > kMaxQueryNs) {
+      return InvalidArgument(
+          Str("timeout must be more than 0 and at most ", kMaxQueryNs / 1'000'000'000, " s"));
+    }
+    limits.timeout =
+        std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::nanoseconds(timeout_ns));
+  }
+  return limits;
+}
+
+// All matching results up to `last` as CSV, in two passes: the first finds out which columns there
+// are.
+class Exporter {
+ public:
+  Exporter(ResultReader& reader, ResultFilter filter, uint64_t last)
+      : reader_(reader), filter_(std::move(filter)), last_(last) {}
+
+  Result<LoadedPage> Next() {
+    VS_ASSIGN_OR_RETURN(const std::vector<StoredResult> results,
+                        reader_.After(filter_, after_, last_, kRowsPerLoad));
+    if (!results.empty()) after_ = results.back().number;
+    const bool pass_over = results.size() < kRowsPerLoad;
+    if (csv_) return Rows(results, pass_over);
+    for (const StoredResult& result : results) {
+      for (const auto& [name, value] : result.record.values) names_.insert(name);
+    }
+    if (!pass_over) return LoadedPage();
+    csv_.emplace(names_);
+    after_ = 0;
+    return Piece(csv_->Header());
+  }
+
+ private:
+  LoadedPage Rows(const std::vector<StoredResult>& results, bool pass_over) const {
+    std::string text;
+    for (const StoredResult& result : results) text += csv_->Row(result);
+    LoadedPage page = Piece(std::move(text));
+    if (pass_over) page.then = LoadedPage::Then::kEnd;
+    return page;
+  }
+
+  static LoadedPage Piece(std::string text) {
+    LoadedPage page;
+    if (text.empty()) return page;
+    pb::ExportResultsResponse response;
+    response.set_data(std::move(text));
+    page.messages.push_back(Serialize(response));
+    return page;
+  }
+
+  ResultReader& reader_;
+  const ResultFilter filter_;
+  const uint64_t last_;
+  uint64_t after_ = 0;
+  std::set<std::string> names_;
+  std::optional<ResultCsv> csv_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<ResultService>> ResultService::Make(ResultStore& store, const Clock& clock) {
+  Readers readers;
+  VS_ASSIGN_OR_RETURN(readers.single, ResultReader::Open(store.file()));
+  VS_ASSIGN_OR_RETURN(readers.lists, ResultReader::Open(store.file()));
+  VS_ASSIGN_OR_RETURN(readers.exports, ResultReader::Open(store.file()));
+  VS_ASSIGN_OR_RETURN(readers.watches, ResultReader::Open(store.file()));
+  VS_ASSIGN_OR_RETURN(readers.query, SqlQuery::Open(store.file(), clock));
+  return std::unique_ptr<ResultService>(new ResultService(store, std::move(readers)));
+}
+
+void ResultService::Register(Router& router) {
+  const std::string service = "/visionserver.v1.ResultService/";
+  router.Unary(service + "ListResults", this, &ResultService::ListResults, {.lane = Lane::kSlow});
+  router.Unary(service + "GetResult", this, &ResultService::GetResult);
+  router.Unary(service + "QueryResults", this, &ResultService::QueryResults, {.lane = Lane::kSlow});
+  router.Stream(service + "ExportResults", this, &ResultService::ExportResults);
+  router.Stream(service + "WatchResults", this, &ResultService::WatchResults);
+}
+
+Result<pb::ListResultsResponse> ResultService::ListResults(const Call& /*call*/,
+                                                           const pb::ListResultsRequest& request) {
+  VS_ASSIGN_OR_RETURN(const ResultFilter filter, FromProto(request.filter()));
+  VS_ASSIGN_OR_RETURN(const auto before, ParsePageToken(request.page_token()));
+  const uint32_t size = request.page_size() == 0 ? kDefaultPage : request.page_size();
+  if (size > kMaxPage) {
+    return InvalidArgument(Str("page_size must be 1 to ", kMaxPage, ", or 0 for ", kDefaultPage));
+  }
+  // One more than asked for tells whether there is another page.
+  VS_ASSIGN_OR_RETURN(std::vector<StoredResult> results,
+                      readers_.lists->Before(filter, before, size + 1));
+  pb::ListResultsResponse response;
+  if (results.size() > size) {
+    results.pop_back();
+    response.set_next_page_token(std::to_string(results.back().number));
+  }
+  for (const StoredResult& result : results) *response.add_results() = ToProto(result);
+  return response;
+}
+
+Result<pb::Result> ResultService::GetResult(const Call& /*call*/,
+                                            const pb::GetResultRequest& request) {
+  VS_ASSIGN_OR_RETURN(const StoredResult result, readers_.single->Get(request.result_id()));
+  return ToProto(result);
+}
+
+Result<pb::QueryResultsResponse> ResultService::QueryResults(
+    const Call& call, const pb::QueryResultsRequest& request) {
+  VS_ASSIGN_OR_RETURN(const SqlLimits limits, LimitsOf(request));
+  std::vector<SqlValue> arguments;
+  for (const pb::Value& argument : request.arguments()) {
+    VS_ASSIGN_OR_RETURN(arguments.emplace_back(), ToSqlValue(argument));
+  }
+  VS_ASSIGN_OR_RETURN(const SqlTable table,
+                      readers_.query->Run(request.sql(), arguments, limits,
+                                          [&call] { return call.cancelled.stop_requested(); }));
+  pb::QueryResultsResponse response;
+  *response.mutable_table() = ToProto(table);
+  response.set_truncated(table.truncated);
+  return response;
+}
+
+Result<std::unique_ptr<StreamSource>> ResultService::ExportResults(
+    const Call& /*call*/, const pb::ExportResultsRequest& request) {
+  VS_ASSIGN_OR_RETURN(ResultFilter filter, FromProto(request.filter()));
+  const auto exporter =
+      std::make_shared<Exporter>(*readers_.exports, std::move(filter), store_.State().last_number);
+  return std::make_unique<LoadingSource>(loads_, [exporter] { return exporter->Next(); });
+}
+
+Result<std::unique_ptr<StreamSource>> ResultService::WatchResults(
+    const Call& /*call*/, const pb::WatchResultsRequest& request) {
+  VS_ASSIGN_OR_RETURN(ResultFilter filter, FromProto(request.filter()));
+  filter.from_ns = filter.until_ns = std::nullopt;
+  const uint64_t first =
+      request.has_after_number() ? request.after_number() : store_.State().last_number;
+  const auto load = [this, filter, after = first]() mutable -> Result<LoadedPage> {
+    // Looked at before reading: what comes later is announced.
+    const uint64_t last = store_.State().last_number;
+    VS_ASSIGN_OR_RETURN(const std::vector<StoredResult> results,
+                        readers_.watches->After(filter, after, last, kRowsPerLoad));
+    LoadedPage page;
+    for (const StoredResult& result : results) {
+      page.messages.push_back(Serialize(ToProto(result)));
+    }
+    const bool all = results.size() < kRowsPerLoad;
+    after = all ? std::max(after, last) : results.back().number;
+    if (all) page.then = LoadedPage::Then::kIdle;
+    return page;
+  };
+  return std::make_unique<LoadingSource>(loads_, load, [this](std::function<void()> wake) {
+    return store_.OnCommitted([wake = std::move(wake)](uint64_t) { wake(); });
+  });
+}
+
+}  // namespace vs
