@@ -57,8 +57,8 @@ class Recycler {
 
   Recycler() : store_(std::make_shared<internal::BlockStore>()) {}
   template <class U>
-  Recycler(const Recycler<U>& other)
-      : store_(other.store_) {}  // NOLINT(google-explicit-constructor)
+  // NOLINTNEXTLINE(google-explicit-constructor): allocators convert
+  Recycler(const Recycler<U>& other) : store_(other.store_) {}
 
   T* allocate(size_t count) { return static_cast<T*>(store_->Take(count * sizeof(T))); }
   void deallocate(T* block, size_t count) { store_->Give(block, count * sizeof(T)); }

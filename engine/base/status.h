@@ -118,9 +118,11 @@ Status Cancelled(std::string message);
 // VS_ASSIGN_OR_RETURN(auto rig, LoadRig(path)): the value, or out with the error.
 #define VS_ASSIGN_OR_RETURN(target, expression) \
   VS_ASSIGN_OR_RETURN_(VS_CONCAT_(vs_result_, __LINE__), target, expression)
+// NOLINTBEGIN(bugprone-macro-parentheses): a declaration cannot stand in parentheses.
 #define VS_ASSIGN_OR_RETURN_(result, target, expression) \
   auto result = (expression);                            \
   if (!(result).has_value()) {                           \
     return (result).error();                             \
   }                                                      \
   target = std::move(*result)
+// NOLINTEND(bugprone-macro-parentheses)

@@ -77,7 +77,7 @@ void ActiveRun::PlanTasks() {
 }
 
 Status ActiveRun::Start() {
-  if (const Status status = StartBlocks(); !status.ok()) {
+  if (Status status = StartBlocks(); !status.ok()) {
     StopBlocks();
     MutexLock lock(queue_.mutex);
     phase_ = Phase::kOver;

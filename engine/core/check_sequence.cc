@@ -30,6 +30,7 @@ std::string Listed(const std::vector<std::string>& names, std::string_view separ
 template <class Described>
 std::string NamesOf(const std::vector<Described*>& described) {
   std::vector<std::string> names;
+  names.reserve(described.size());
   for (const Described* one : described) names.push_back(one->info().name);
   return names.empty() ? "none" : Listed(names, ", ");
 }
@@ -195,6 +196,7 @@ class Checker {
 
   void CheckCycles() {
     Graph graph;
+    graph.reserve(nodes_.size());
     for (Node& node : nodes_) graph.push_back(std::move(node.downstream));
     for (const std::vector<int>& cycle : FindCycles(graph)) {
       std::vector<std::string> ids;

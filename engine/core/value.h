@@ -4,6 +4,8 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -44,10 +46,11 @@ class Value {
                    std::shared_ptr<const DepthMap>, std::shared_ptr<const StereoRig>>;
 
   Value() = default;
-  template <class T>
-  requires std::is_constructible_v<Variant, T&&> &&
-      (!std::is_same_v<std::decay_t<T>, Value>)Value(T&& value)
-      : variant_(std::forward<T>(value)) {}  // NOLINT(google-explicit-constructor)
+  // From anything that the variant holds.
+  template <class T, class = std::enable_if_t<std::is_constructible_v<Variant, T&&> &&
+                                              !std::is_same_v<std::decay_t<T>, Value>>>
+  // NOLINTNEXTLINE(google-explicit-constructor,bugprone-forwarding-reference-overload)
+  Value(T&& value) : variant_(std::forward<T>(value)) {}
 
   bool empty() const { return std::holds_alternative<std::monostate>(variant_); }
   const Variant& variant() const { return variant_; }
