@@ -42,10 +42,9 @@ Result<std::vector<ParamAssignment>> FromProto(
     }
   }
   if (faults.empty()) return assignments;
-  return Status(
-      StatusCode::kInvalidArgument,
-      Str("nothing was changed: ", Quoted(faults.front().subject), ": ", faults.front().message),
-      std::move(faults));
+  std::string first =
+      Str("nothing was changed: ", Quoted(faults.front().subject), ": ", faults.front().message);
+  return Status(StatusCode::kInvalidArgument, std::move(first), std::move(faults));
 }
 
 }  // namespace vs

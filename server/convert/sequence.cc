@@ -118,8 +118,8 @@ Result<SequenceSpec> FromProto(const std::string& id, const pb::SequenceSpec& sp
     }
   }
   if (faults.empty()) return result;
-  return Status(StatusCode::kInvalidArgument,
-                Str(faults.front().subject, ": ", faults.front().message), std::move(faults));
+  std::string first = faults.front().subject + ": " + faults.front().message;
+  return Status(StatusCode::kInvalidArgument, std::move(first), std::move(faults));
 }
 
 pb::Sequence ToProto(const StoredSequence& stored, const SequenceStatus& status, bool with_spec) {

@@ -22,11 +22,10 @@ Status CheckUnlessAllowed(const SequenceSpec& spec, bool allow_faults) {
   std::vector<Fault> faults = CheckSequence(spec);
   if (faults.empty()) return Status();
   const std::string first = faults.front().subject + ": " + faults.front().message;
-  return Status(StatusCode::kInvalidArgument,
-                faults.size() == 1
-                    ? Str("the sequence has a fault: ", first)
-                    : Str("the sequence has ", faults.size(), " faults, the first is ", first),
-                std::move(faults));
+  std::string message =
+      faults.size() == 1 ? "the sequence has a fault: " + first
+                         : Str("the sequence has ", faults.size(), " faults, the first is ", first);
+  return Status(StatusCode::kInvalidArgument, std::move(message), std::move(faults));
 }
 
 // Which parts of a sequence an update replaces.
