@@ -95,13 +95,13 @@ Status SaveRig(const StereoRig& rig, const std::filesystem::path& path) {
     const File file(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
     if (!file.ok()) return SystemError(temporary, "create");
     if (!file.Write(FormatRig(rig)) || !file.Sync()) {
-      const Status status = SystemError(temporary, "write");
+      Status status = SystemError(temporary, "write");
       unlink(temporary.c_str());
       return status;
     }
   }
   if (rename(temporary.c_str(), path.c_str()) != 0) {
-    const Status status = SystemError(path, "replace");
+    Status status = SystemError(path, "replace");
     unlink(temporary.c_str());
     return status;
   }

@@ -106,8 +106,13 @@ ColorImage Colorize(int width, int height, ColorMap map, BufferPool& pool, Nearn
     Rgb* row = image.Row(y);
     for (int x = 0; x < width; ++x) {
       const float t = nearness(x, y);
-      row[x] = std::isnan(t) ? invalid
-                             : palette[static_cast<size_t>(std::clamp(t, 0.0F, 1.0F) * 255 + 0.5F)];
+      if (std::isnan(t)) {
+        row[x] = invalid;
+        continue;
+      }
+      // 255 t, rounded
+      const auto half_steps = static_cast<size_t>(std::clamp(t, 0.0F, 1.0F) * 510);
+      row[x] = palette[(half_steps + 1) / 2];
     }
   }
   return image;

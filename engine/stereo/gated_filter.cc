@@ -125,10 +125,11 @@ uint16_t FillValue(const DisparityMap& map, const GreyImage& left, int gate, int
     }
   }
   if (count < kLeastMembers) return kInvalidDisparity;
-  std::nth_element(members.begin(), members.begin() + count / 2, members.begin() + count);
-  const uint16_t median = members[count / 2];
-  const auto agreeing = std::count_if(members.begin(), members.begin() + count,
-                                      [&](int d) { return std::abs(d - median) <= kAgreeing; });
+  uint16_t* const begin = members.data();
+  std::nth_element(begin, begin + count / 2, begin + count);
+  const uint16_t median = begin[count / 2];
+  const auto agreeing =
+      std::count_if(begin, begin + count, [&](int d) { return std::abs(d - median) <= kAgreeing; });
   return agreeing * 10 >= count * 7 ? median : kInvalidDisparity;
 }
 

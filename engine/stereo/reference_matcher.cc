@@ -1,5 +1,6 @@
 // The plain matcher: each stage as its header defines it, one after the other over the whole
-// picture. It is the measure of the fast backends, so clarity goes before speed.
+// picture. It is the measure of the fast backends, so clarity goes before speed. It keeps two bytes
+// for each pixel and disparity (80 MB at 648 x 483 with 128) from picture to picture.
 #include <algorithm>
 #include <cstddef>
 #include <memory>

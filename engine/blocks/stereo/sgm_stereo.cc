@@ -1,5 +1,5 @@
 // Computes disparity from a rectified pair by semi-global matching.
-#include <array>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -314,7 +314,7 @@ class SgmStereo final : public Block {
     s.p1 = *p1;
     s.p2 = *p2;
     s.p2_min = *p2_min;
-    s.p2_slope_permille = static_cast<int>(*p2_slope * 1000 + 0.5);
+    s.p2_slope_permille = static_cast<int>(std::lround(*p2_slope * 1000));
     s.sub_pixel = ChoiceOf<SubPixel>(sub_pixel);
     s.uniqueness_percent = *uniqueness;
     s.min_confidence = *min_confidence;
