@@ -50,6 +50,12 @@ class FakeGate final : public Gatekeeper {
 // A client that answers as a test wants.
 class FakeChannel final : public Channel {
  public:
+  FakeChannel() = default;
+  // A call uses its channel until it has ended.
+  ~FakeChannel() override { EXPECT_TRUE(Ended()); }
+  FakeChannel(const FakeChannel&) = delete;
+  FakeChannel& operator=(const FakeChannel&) = delete;
+
   void Receive() override { ++receives; }
   void Send(WireMessage message) override { Add(message); }
   void SendAndFinish(WireMessage message) override {
@@ -374,7 +380,7 @@ TEST_F(DispatcherTest, ExceptionOfASourceEndsItsStream) {
   const auto call = Open(channel);
   service_.numbers.Publish(-2);
   EXPECT_EQ(channel.status().code(), StatusCode::kInternal);
-  EXPECT_EQ(service_.numbers.sources, 0);
+  EXPECT_TRUE(WaitUntil([&] { return service_.numbers.sources == 0; }));
 }
 
 TEST_F(DispatcherTest, SourceIsAskedAgainAtTheInstantItNamed) {
@@ -393,7 +399,7 @@ TEST_F(DispatcherTest, ClientThatLeavesFreesItsSource) {
   const auto idle = Open(resting);
   idle->OnCancelled();
   EXPECT_EQ(resting.status().code(), StatusCode::kCancelled);
-  EXPECT_EQ(service_.numbers.sources, 0);
+  EXPECT_TRUE(WaitUntil([&] { return service_.numbers.sources == 0; }));
 
   FakeChannel sending;
   const auto busy = Open(sending);
@@ -402,7 +408,7 @@ TEST_F(DispatcherTest, ClientThatLeavesFreesItsSource) {
   busy->OnCancelled();
   busy->OnSent(false);
   EXPECT_EQ(sending.status().code(), StatusCode::kCancelled);
-  EXPECT_EQ(service_.numbers.sources, 0);
+  EXPECT_TRUE(WaitUntil([&] { return service_.numbers.sources == 0; }));
 }
 
 TEST_F(DispatcherTest, WakeAfterTheEndDoesNothing) {
@@ -467,7 +473,7 @@ TEST_F(DispatcherTest, StreamThatNobodyReadsIsCutOff) {
   ASSERT_TRUE(WaitUntil([&] { return channel.aborts > 0; }));
   call->OnSent(false);
   EXPECT_EQ(channel.status().code(), StatusCode::kCancelled);
-  EXPECT_EQ(service_.numbers.sources, 0);
+  EXPECT_TRUE(WaitUntil([&] { return service_.numbers.sources == 0; }));
 }
 
 TEST_F(DispatcherTest, ReadingAStreamCountsAsUseOfTheSession) {
@@ -525,6 +531,7 @@ TEST_F(DispatcherTest, CountsCallsByMethod) {
   Begin(kLogin, denied, "bad");
   FakeChannel left;
   Open(left)->OnCancelled();
+  EXPECT_TRUE(left.Ended());
   const std::vector<MethodStats> stats = dispatcher_->Statistics();
   ASSERT_EQ(stats.size(), 2U);
   EXPECT_EQ(stats[0].method, kWatch);
