@@ -70,6 +70,8 @@ Result<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
   server->RegisterServices();
   VS_RETURN_IF_ERROR(server->StartNetwork());
   server->vision_->StartSequences();
+  server->vision_watch_ = std::make_unique<VisionWatch>(*server->vision_, server->health_,
+                                                        server->alarms_, server->system_clock_);
   return server;
 }
 

@@ -23,6 +23,7 @@
 #include "server/services/user_service.h"
 #include "server/transport/grpc_server.h"
 #include "server/vision.h"
+#include "server/vision_watch.h"
 
 namespace vs {
 
@@ -83,6 +84,7 @@ class Server {
   AlarmBoard alarms_;
   std::unique_ptr<AccessControl> access_;
   std::unique_ptr<Vision> vision_;
+  std::unique_ptr<VisionWatch> vision_watch_;
 
   // What answers calls. They go before the parts above.
   std::unique_ptr<SessionService> session_service_;

@@ -376,6 +376,27 @@ TEST_F(SequenceApi, WhatASequenceLogsIsWatchedListedQueriedAndExported) {
   EXPECT_THAT(csv, HasSubstr(result.result_id()));
 }
 
+TEST_F(SequenceApi, AFailingSequenceIsUnhealthyAndRaisesAnAlarm) {
+  ProbeOf("step").run = [](const StepRun&) { return Unavailable("the lamp is dark"); };
+  Create(CountSpec());
+  const std::string name = "sequences/count";
+  EXPECT_TRUE(WaitUntil([&] { return server_->health().Get(name) == false; }));
+  ASSERT_TRUE(Start("count").ok());
+  const auto alarmed = [&] {
+    for (const AlarmBoard::Alarm& alarm : server_->alarms().List()) {
+      if (alarm.id == name) return alarm.message == "sequence count: step: the lamp is dark";
+    }
+    return false;
+  };
+  EXPECT_TRUE(WaitUntil(alarmed));
+  EXPECT_EQ(false, server_->health().Get(name));
+  ASSERT_TRUE(Stop("count").ok());
+  ProbeOf("step").run = nullptr;
+  ASSERT_TRUE(Start("count").ok());
+  EXPECT_TRUE(WaitUntil([&] { return server_->health().Get(name) == true; }));
+  EXPECT_TRUE(WaitUntil([&] { return !alarmed(); }));
+}
+
 TEST_F(SequenceApi, AfterARestartEverythingIsThereAgain) {
   pb::Sequence created = Create(CountSpec());
   pb::UpdateSequenceRequest mark;

@@ -1,0 +1,92 @@
+#include "server/vision_watch.h"
+
+#include <chrono>
+#include <utility>
+
+#include "engine/base/str.h"
+
+namespace vs {
+namespace {
+
+constexpr std::chrono::milliseconds kPeriod{500};
+constexpr int64_t kClearAfterNs = 5'000'000'000;
+
+using Severity = AlarmBoard::Severity;
+
+}  // namespace
+
+VisionWatch::VisionWatch(Vision& vision, HealthBoard& health, AlarmBoard& alarms,
+                         const Clock& clock)
+    : vision_(vision), health_(health), alarms_(alarms), clock_(clock) {
+  thread_ = std::jthread([this] { Run(); });
+}
+
+VisionWatch::~VisionWatch() {
+  {
+    MutexLock lock(mutex_);
+    closing_ = true;
+  }
+  changed_.NotifyAll();
+  thread_.join();
+}
+
+void VisionWatch::Run() {
+  while (true) {
+    Look();
+    MutexLock lock(mutex_);
+    if (!closing_) changed_.WaitFor(mutex_, kPeriod);
+    if (closing_) return;
+  }
+}
+
+void VisionWatch::Look() {
+  if (const Status fault = vision_.results().State().fault; !fault.ok()) {
+    Report("results", Severity::kError, Str("results queue in memory: ", fault.message()));
+  }
+  LookAtSequences();
+  LookAtCameras();
+  ClearOld();
+}
+
+void VisionWatch::LookAtSequences() {
+  std::set<std::string> gone = std::exchange(known_, {});
+  for (const SequenceStatus& status : vision_.sequences().List()) {
+    const std::string name = "sequences/" + status.id;
+    health_.Set(name, status.activity == Activity::kRunning);
+    known_.insert(name);
+    gone.erase(name);
+    if (status.error.empty()) continue;
+    const std::string block = status.error_block.empty() ? "" : status.error_block + ": ";
+    Report(name, status.activity == Activity::kFault ? Severity::kError : Severity::kWarning,
+           Str("sequence ", status.id, ": ", block, status.error));
+  }
+  for (const std::string& name : gone) health_.Remove(name);
+}
+
+void VisionWatch::LookAtCameras() {
+  for (const CameraEntry& camera : vision_.cameras().Cameras()) {
+    const bool bad =
+        camera.stats.state == CameraState::kLost || camera.stats.state == CameraState::kStalled;
+    if (!bad || camera.used_by.empty()) continue;
+    Report("cameras/" + camera.id, Severity::kError,
+           Str("camera ", camera.id, ": ",
+               camera.stats.last_error.empty() ? CameraStateName(camera.stats.state)
+                                               : camera.stats.last_error));
+  }
+}
+
+void VisionWatch::Report(const std::string& id, Severity severity, const std::string& message) {
+  alarms_.Raise(id, severity, message);
+  reported_ns_[id] = clock_.MonotonicNs();
+}
+
+void VisionWatch::ClearOld() {
+  const int64_t now_ns = clock_.MonotonicNs();
+  std::erase_if(reported_ns_, [&](const auto& entry) {
+    if (now_ns - entry.second < kClearAfterNs) return false;
+    alarms_.Clear(entry.first);
+    return true;
+  });
+}
+
+}  // namespace vs
