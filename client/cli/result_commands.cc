@@ -140,10 +140,12 @@ void AddResultCommands(CommandLine& line) {
   const auto sql = query.Positional("SQL", "One SELECT of SQLite");
   const auto arguments = query.Texts("--arg", "TEXT", "Takes the place of ?1, then ?2 ...");
   const auto max_rows = query.Count("--max-rows", "How many rows to show at most", 1000, 1, 10'000);
-  query.Example("visionctl results query \"SELECT * FROM results ORDER BY number DESC LIMIT 5\"")
+  query.Example("visionctl results query \"SELECT * FROM result ORDER BY number DESC LIMIT 5\"")
       .Example(
-          "visionctl results query \"SELECT count(*) FROM results WHERE part_id = ?1\" "
-          "--arg P-17");
+          "visionctl results query \"SELECT count(*) FROM result WHERE part_id = ?1\" --arg P-17")
+      .Example(
+          "visionctl results query "
+          "\"SELECT avg(value) FROM result_field WHERE name = 'valid_percent'\"");
   query.Run([=](Session& session) { return Query(session, *sql, *arguments, *max_rows); });
 
   Command& tail = line.Add("results tail", "Print each new result, until Ctrl-C");

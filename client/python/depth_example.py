@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Prints what lies in the middle of the depth images of a running sequence.
 
-    PYTHONPATH=build/release/client/python VISIONSERVER_TOKEN=API_KEY \\
-        client/python/depth_example.py --server cell-7 --fingerprint AB:CD:... stereo_depth/depth
+    VISIONSERVER_TOKEN=API_KEY build/release/client/python/depth_example.py \\
+        --server cell-7 --fingerprint AB:CD:... stereo_depth/depth
 
-The API key comes from `visionctl keys create NAME`.
+The API key comes from `visionctl keys create NAME`. Elsewhere, set PYTHONPATH to the folder that
+holds the package visionserver.
 """
 
 import argparse

@@ -99,6 +99,9 @@ std::vector<std::string> ColumnNames(const Statement& statement) {
 
 // Never names the file or the place where it lies.
 Status ForClient(Database& database, const Status& error) {
+  if (error.code() == StatusCode::kPermissionDenied) {
+    return InvalidArgument("SQL: only a SELECT over result and result_field is allowed");
+  }
   return Status(error.code(), Str("SQL: ", sqlite3_errmsg(database.handle())));
 }
 

@@ -2,6 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "visionserver/v1/sequence.grpc.pb.h"
+
+#include "client/call.h"
+#include "client/cli/sequence_text.h"
+#include "client/client.h"
+#include "tests/client/simulated_sequence.h"
 #include "tests/support/child_process.h"
 #include "tests/support/test_server.h"
 
@@ -30,6 +36,23 @@ class PythonClientTest : public testing::Test {
     return done ? *done : FinishedProcess();
   }
 
+  void StartSimulation() {
+    const auto client = client::Client::Connect({.address = server_->address(),
+                                                 .fingerprint = server_->fingerprint(),
+                                                 .credential = server_.Token(Role::kEngineer)});
+    ASSERT_TRUE(client) << client.error().ToString();
+    const auto read = cli::SequenceFromJson(SimulatedSequence("sim"));
+    ASSERT_TRUE(read) << read.error().ToString();
+    client::v1::CreateSequenceRequest request;
+    request.set_id("sim");
+    *request.mutable_spec() = read->spec;
+    const auto made = client::Call(*(*client)->connection(),
+                                   &client::v1::SequenceService::Stub::CreateSequence, request);
+    ASSERT_TRUE(made) << made.error().ToString();
+    const auto started = (*client)->StartSequence("sim");
+    ASSERT_TRUE(started) << started.error().ToString();
+  }
+
   TestServer server_;
 };
 
@@ -38,6 +61,29 @@ TEST_F(PythonClientTest, ConnectsLogsInAndCalls) {
   const FinishedProcess done = Run(VS_PYTHON_TESTS "/connect_test.py");
   EXPECT_EQ(0, done.exit_code) << done.error_output;
   EXPECT_THAT(done.error_output, testing::HasSubstr("Ran 8 tests"));
+}
+
+TEST_F(PythonClientTest, ReceivesDepthInEveryCodec) {
+  StartSimulation();
+  const FinishedProcess done = Run(VS_PYTHON_TESTS "/depth_test.py");
+  EXPECT_EQ(0, done.exit_code) << done.error_output;
+  EXPECT_THAT(done.error_output, testing::HasSubstr("Ran 3 tests"));
+}
+
+TEST_F(PythonClientTest, HasAnExampleThatRuns) {
+  StartSimulation();
+  const FinishedProcess done = Run(VS_PYTHON_PACKAGES "/depth_example.py",
+                                   {"--server", server_->address(), "--fingerprint",
+                                    server_->fingerprint(), "--frames", "2", "sim/depth"});
+  EXPECT_EQ(0, done.exit_code) << done.error_output;
+  EXPECT_THAT(done.output, testing::ContainsRegex("frame [0-9]+: 130 x 97, [0-9.]+ % valid, middle "
+                                                  "[0-9.]+ m, 0 dropped\n"));
+
+  const FinishedProcess stopped = Run(
+      VS_PYTHON_PACKAGES "/depth_example.py",
+      {"--server", server_->address(), "--fingerprint", server_->fingerprint(), "nothing/depth"});
+  EXPECT_EQ(1, stopped.exit_code);
+  EXPECT_THAT(stopped.error_output, testing::StartsWith("NOT_FOUND: "));
 }
 
 }  // namespace
