@@ -44,9 +44,8 @@ struct SensorNoise {
 
 // Turns light into grey values:
 //   grey = clamp(light * exposure * gain + black level + noise),
-// with read noise and shot noise (EMVA 1288's linear model). `lag` of determinism: the noise of a
-// pixel depends on seed, instant and its place on the sensor only, so a window shows the same
-// pixels as the whole picture.
+// with read noise and shot noise (EMVA 1288's linear model). The noise of a pixel depends on seed,
+// instant and its place on the sensor only, so a window shows the same pixels as the whole picture.
 class Sensor {
  public:
   Sensor(const SensorSettings& settings, double sensitivity, const SensorNoise& noise,

@@ -3,7 +3,6 @@
 #include <fnmatch.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include <opencv2/imgcodecs.hpp>
@@ -36,14 +35,14 @@ std::vector<std::string> ListPictures(const std::string& folder, const std::stri
 }
 
 Result<std::unique_ptr<FolderCamera>> FolderCamera::Load(const std::vector<std::string>& files,
-                                                         double pictures_hz,
+                                                         int64_t period_ns,
                                                          const SensorNoise& noise) {
   std::unique_ptr<FolderCamera> camera;
   for (const std::string& file : files) {
     const cv::Mat picture = ReadGrey(file);
     if (picture.empty()) return InvalidArgument(Str(file, " is not a picture that can be read"));
     if (camera == nullptr) {
-      camera.reset(new FolderCamera(picture.cols, picture.rows, pictures_hz, noise));
+      camera.reset(new FolderCamera(picture.cols, picture.rows, period_ns, noise));
     }
     if (picture.cols != camera->width() || picture.rows != camera->height()) {
       return InvalidArgument(Str(file, " is ", picture.cols, " x ", picture.rows, " pixels, but ",
@@ -59,13 +58,13 @@ Result<std::unique_ptr<FolderCamera>> FolderCamera::Load(const std::vector<std::
   return camera;
 }
 
-FolderCamera::FolderCamera(int width, int height, double pictures_hz, const SensorNoise& noise)
-    : PictureSource(width, height, 1.0, noise), pictures_hz_(pictures_hz) {}
+FolderCamera::FolderCamera(int width, int height, int64_t period_ns, const SensorNoise& noise)
+    : PictureSource(width, height, 1.0, noise), period_ns_(period_ns) {}
 
 void FolderCamera::Look(int64_t instant_ns) {
-  const auto number = static_cast<int64_t>(std::floor(instant_ns * 1e-9 * pictures_hz_ + 0.5));
-  const auto count = static_cast<int64_t>(pictures_.size());
-  shown_ = static_cast<size_t>((number % count + count) % count);
+  // Pulses of the line come at whole periods; rounding forgives a camera clock its last tick.
+  const int64_t number = (instant_ns + period_ns_ / 2) / period_ns_;
+  shown_ = static_cast<size_t>(number) % pictures_.size();
 }
 
 const Light* FolderCamera::LightRows(int y, int count) {

@@ -17,19 +17,19 @@ std::vector<std::string> ListPictures(const std::string& folder, const std::stri
 class FolderCamera final : public PictureSource {
  public:
   // Reads all files. Errors name the file that cannot be read or differs in size from the first.
-  // Which picture is shown depends on the instant alone, `pictures_hz` of them a second, so that
-  // two cameras show the pictures of one pair at one instant.
+  // Which picture is shown depends on the instant alone, a new one every `period_ns`, so that two
+  // cameras show the pictures of one pair at one instant.
   static Result<std::unique_ptr<FolderCamera>> Load(const std::vector<std::string>& files,
-                                                    double pictures_hz, const SensorNoise& noise);
+                                                    int64_t period_ns, const SensorNoise& noise);
 
  protected:
   void Look(int64_t instant_ns) override;
   const Light* LightRows(int y, int count) override;
 
  private:
-  FolderCamera(int width, int height, double pictures_hz, const SensorNoise& noise);
+  FolderCamera(int width, int height, int64_t period_ns, const SensorNoise& noise);
 
-  double pictures_hz_;
+  int64_t period_ns_;
   std::vector<std::vector<uint8_t>> pictures_;  // width x height each
   size_t shown_ = 0;
   std::vector<Light> rows_;

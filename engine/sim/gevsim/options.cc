@@ -18,6 +18,10 @@ DeviceClock Options::RightClock() const {
   return ClockOf(tick_hz, right_offset_ms, right_drift_ppm);
 }
 
+int64_t Options::PicturePeriodNs() const {
+  return static_cast<int64_t>(1e9 / (line_hz > 0 ? line_hz : 1));
+}
+
 ParsedOptions ParseOptions(int argc, char** argv) {
   ParsedOptions parsed;
   Options& o = parsed.options;

@@ -35,6 +35,8 @@ struct Options {
 
   DeviceClock LeftClock() const;
   DeviceClock RightClock() const;
+  // Between two pulses of the line; a second if there are none.
+  int64_t PicturePeriodNs() const;
 };
 
 // The options, or the exit code with which the program is to end at once (help was asked for, or

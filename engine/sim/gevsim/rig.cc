@@ -26,7 +26,7 @@ Result<std::unique_ptr<PictureSource>> MakePictures(const Options& options,
   if (!options.folder.empty()) {
     const std::vector<std::string> files = ListPictures(options.folder, plan.pattern);
     VS_ASSIGN_OR_RETURN(std::unique_ptr<PictureSource> pictures,
-                        FolderCamera::Load(files, options.line_hz, {0, options.seed}));
+                        FolderCamera::Load(files, options.PicturePeriodNs(), {0, options.seed}));
     return pictures;
   }
   return std::make_unique<SceneCamera>(
@@ -76,10 +76,10 @@ Result<std::unique_ptr<Rig>> Rig::Start(const Options& options) {
   for (const std::string& fault : options.faults) {
     if (const auto done = rig->Command(fault); !done) return done.error().Annotated("--fault");
   }
-  const int64_t period_ns = options.line_hz > 0 ? static_cast<int64_t>(1e9 / options.line_hz) : 0;
-  rig->line_.emplace(period_ns, [&devices = rig->devices_](int64_t instant_ns) {
-    for (const NamedDevice& camera : devices) camera.device->OnLine(instant_ns);
-  });
+  rig->line_.emplace(options.line_hz > 0 ? options.PicturePeriodNs() : 0,
+                     [&devices = rig->devices_](int64_t instant_ns) {
+                       for (const NamedDevice& camera : devices) camera.device->OnLine(instant_ns);
+                     });
   if (!options.control_path.empty()) {
     VS_ASSIGN_OR_RETURN(
         rig->control_,

@@ -44,14 +44,15 @@ TEST_F(FolderPictures, AreListedByPatternAndName) {
 
 TEST_F(FolderPictures, AreShownUnchangedAndInTurn) {
   const auto camera = FolderCamera::Load(
-      {WriteGrey("0", 33, 21, 10), WriteGrey("1", 33, 21, 128), WriteGrey("2", 33, 21, 255)}, 10,
-      {0, 1});
+      {WriteGrey("0", 33, 21, 10), WriteGrey("1", 33, 21, 128), WriteGrey("2", 33, 21, 255)},
+      100'000'000, {0, 1});
   ASSERT_TRUE(camera.has_value()) << camera.error().ToString();
   EXPECT_EQ((*camera)->width(), 33);
   EXPECT_EQ((*camera)->height(), 21);
   EXPECT_EQ(LevelAt(**camera, 0), 10);
   EXPECT_EQ(LevelAt(**camera, 100'000'001), 128);
   EXPECT_EQ(LevelAt(**camera, 199'999'999), 255);
+  EXPECT_EQ(LevelAt(**camera, 9'000'000'000'000'000'000), 10);  // after 285 years
   EXPECT_EQ(LevelAt(**camera, 300'000'000), 10);
 }
 
@@ -61,12 +62,12 @@ TEST_F(FolderPictures, MustBeReadableAndOfOneSize) {
   const std::string broken = folder_.path() / "broken.png";
   std::ofstream(broken) << "this is no picture";
   for (const std::string& bad : {other, broken, std::string("/nowhere/at/all.png")}) {
-    const auto camera = FolderCamera::Load({good, bad}, 10, {0, 1});
+    const auto camera = FolderCamera::Load({good, bad}, 100'000'000, {0, 1});
     ASSERT_FALSE(camera.has_value());
     EXPECT_EQ(camera.error().code(), StatusCode::kInvalidArgument);
     EXPECT_NE(camera.error().message().find(bad), std::string::npos) << camera.error().message();
   }
-  EXPECT_FALSE(FolderCamera::Load({}, 10, {0, 1}).has_value());
+  EXPECT_FALSE(FolderCamera::Load({}, 100'000'000, {0, 1}).has_value());
 }
 
 }  // namespace

@@ -47,6 +47,14 @@ class GevSim : public testing::Test {
     }
   }
 
+  // A sanitizer's complaint shows in the exit code.
+  void TearDown() override {
+    if (gevsim_ == nullptr) return;
+    gevsim_->Signal(SIGTERM);
+    const auto exit_code = gevsim_->WaitForExit();
+    EXPECT_TRUE(exit_code == 0 || exit_code == 128 + SIGKILL) << gevsim_->ErrorOutput();
+  }
+
   void Start(std::vector<std::string> options) {
     options.insert(options.end(), {"--folder", folder_.path(), "--control", Socket()});
     auto started = test::StartGevSim(options);
