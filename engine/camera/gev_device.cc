@@ -87,7 +87,7 @@ void GevDevice::Run() {
       calls_.Refuse(status);
       SetState(opened ? CameraState::kLost : CameraState::kOpening, status.message());
     }
-    if (session_ != nullptr) EndStream(status.ok());
+    if (session_ != nullptr) EndStream(status.ok() && watchdog_.answering());
     session_.reset();
     if (!streaming_wanted_) continue;
     if (status.code() == StatusCode::kFailedPrecondition) {
@@ -189,7 +189,7 @@ Status GevDevice::BeginStream() {
   counted_ = {};
   starving_ = false;
   socket_checked_ = false;
-  watchdog_.Restart(clock_.MonotonicNs(), session_->Triggered());
+  watchdog_.Restart(clock_.MonotonicNs(), session_->Triggered(), session_->ExpectedPeriodNs());
   {
     MutexLock lock(stats_mutex_);
     stats_.packet_bytes = session_->packet_bytes();
@@ -291,7 +291,7 @@ Result<FeatureValue> GevDevice::SetFeature(const std::string& name, const Featur
 
 void GevDevice::NoteSettings() {
   receiver_.SetExposure(session_->ExposureUs());
-  watchdog_.SetTriggered(clock_.MonotonicNs(), session_->Triggered());
+  watchdog_.Restart(clock_.MonotonicNs(), session_->Triggered(), session_->ExpectedPeriodNs());
 }
 
 void GevDevice::CountPictures() {
@@ -330,6 +330,7 @@ void GevDevice::KeepHouse(int64_t now_ns) {
   const uint64_t frames = receiver_.counters().frames;
   const double elapsed_s = static_cast<double>(now_ns - last_housekeeping_ns_) * 1e-9;
   MutexLock lock(stats_mutex_);
+  if (stats_.state == CameraState::kStreaming && !starving_) stats_.last_error.clear();
   stats_.frames_per_second = static_cast<double>(frames - last_frames_) / elapsed_s;
   last_frames_ = frames;
   last_housekeeping_ns_ = now_ns;

@@ -152,16 +152,27 @@ Status GevSession::SoftwareTrigger() {
   return done ? Status() : done.error();
 }
 
+double GevSession::FirstOf(std::initializer_list<const char*> names) const {
+  for (const char* name : names) {
+    if (!features_.Has(name)) continue;
+    const auto value = features_.Get(name);
+    const auto* number = value ? std::get_if<double>(&*value) : nullptr;
+    if (number != nullptr) return *number;
+  }
+  return 0;
+}
+
 double GevSession::ExposureUs() const {
   const auto automatic = features_.Get("ExposureAuto");
   if (automatic && !TextIs(automatic, "Off")) return 0;
-  for (const char* name : {"ExposureTime", "ExposureTimeAbs"}) {
-    if (!features_.Has(name)) continue;
-    const auto value = features_.Get(name);
-    const auto* exposure_us = value ? std::get_if<double>(&*value) : nullptr;
-    if (exposure_us != nullptr) return *exposure_us;
-  }
-  return 0;
+  return FirstOf({"ExposureTime", "ExposureTimeAbs"});
+}
+
+int64_t GevSession::ExpectedPeriodNs() const {
+  const double rate_hz = FirstOf({"ResultingFrameRate", "ResultingFrameRateAbs",
+                                  "AcquisitionFrameRate", "AcquisitionFrameRateAbs"});
+  // A rate that no camera has is none.
+  return rate_hz > 1e-3 && rate_hz < 1e6 ? static_cast<int64_t>(1e9 / rate_hz) : 0;
 }
 
 bool GevSession::PayloadChanged() const {

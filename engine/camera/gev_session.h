@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,6 +50,8 @@ class GevSession {
   bool Triggered() const;
   Status SoftwareTrigger();
   double ExposureUs() const;  // 0 when unknown or automatic
+  // Between two pictures of the free-running camera; 0 when it does not tell.
+  int64_t ExpectedPeriodNs() const;
   // The size of a picture differs from what the open stream expects.
   bool PayloadChanged() const;
   // Reads both clocks; nullopt when the camera cannot latch its clock.
@@ -58,6 +61,8 @@ class GevSession {
   bool control_lost() const { return control_lost_; }
 
  private:
+  // The first of these features that the camera has; 0 when it has none.
+  double FirstOf(std::initializer_list<const char*> names) const;
   explicit GevSession(GObjectPtr<ArvDevice> device, std::string address);
   Status SetPacketSize(int packet_bytes);
   // Sets what exists and can be written now.

@@ -15,14 +15,11 @@ constexpr int64_t kIdleUntilLostNs = 5000 * kMs;
 
 }  // namespace
 
-void GevWatchdog::Restart(int64_t now_ns, bool triggered) {
+void GevWatchdog::Restart(int64_t now_ns, bool triggered, int64_t period_ns) {
   *this = GevWatchdog();
   triggered_ = triggered;
-  quiet_until_ns_ = now_ns + kFirstPicturePatienceNs;
-}
-
-void GevWatchdog::SetTriggered(int64_t now_ns, bool triggered) {
-  if (triggered != triggered_) Restart(now_ns, triggered);
+  period_ns_ = period_ns;
+  quiet_until_ns_ = now_ns + std::max(kFirstPicturePatienceNs, 3 * period_ns);
 }
 
 void GevWatchdog::Picture(int64_t now_ns, int64_t period_ns) {

@@ -21,9 +21,9 @@ class GevWatchdog {
     kLostIdle,    // give up: it answers but sends no pictures
   };
 
-  // The stream was opened. The first picture may take longer.
-  void Restart(int64_t now_ns, bool triggered);
-  void SetTriggered(int64_t now_ns, bool triggered);
+  // The stream was opened, or the camera was set differently. The next picture may take longer.
+  // `period_ns` is the time between two pictures as far as the camera tells it, else 0.
+  void Restart(int64_t now_ns, bool triggered, int64_t period_ns);
   // A picture came. `period_ns` is the usual time between two, 0 when unknown.
   void Picture(int64_t now_ns, int64_t period_ns);
   // Pictures come but there is no buffer for them.

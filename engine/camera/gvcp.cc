@@ -204,8 +204,11 @@ Result<std::vector<FoundCamera>> DiscoverGevCameras(Milliseconds timeout,
   std::array<uint8_t, 1024> memory;
   bool complete = false;
   while (!complete && poll(events.data(), events.size(), RemainingMs(deadline)) > 0) {
-    for (const pollfd& event : events) {
-      if ((event.revents & POLLIN) == 0) continue;
+    for (pollfd& event : events) {
+      if ((event.revents & POLLIN) == 0) {
+        if (event.revents != 0) event.fd = -1;  // this network is gone: hear it no more
+        continue;
+      }
       const auto answer = Answer(Receive(event.fd, memory), kDiscovery, kId, kDiscoveryBytes);
       if (!answer) continue;
       const FoundCamera camera = Describe(*answer);

@@ -29,6 +29,7 @@ void CameraWatch::Take(FramePtr frame) {
   MutexLock lock(mutex_);
   if (last_ != nullptr && frame->number <= last_->number) out_of_order_ = true;
   ++frames_;
+  gapless_ = last_ != nullptr && frame->number == last_->number + 1 ? gapless_ + 1 : 1;
   if (hold_) held_.push_back(frame);
   last_ = std::move(frame);
   changed_.NotifyAll();
@@ -47,6 +48,11 @@ FramePtr CameraWatch::LastFrame() const {
 bool CameraWatch::OutOfOrder() const {
   MutexLock lock(mutex_);
   return out_of_order_;
+}
+
+uint64_t CameraWatch::GaplessFrames() const {
+  MutexLock lock(mutex_);
+  return gapless_;
 }
 
 void CameraWatch::Hold(bool hold) {

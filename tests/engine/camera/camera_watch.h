@@ -24,6 +24,8 @@ class CameraWatch {
   FramePtr LastFrame() const;
   // Frame numbers ran back or repeated.
   bool OutOfOrder() const;
+  // Frames since the last gap in their numbers.
+  uint64_t GaplessFrames() const;
   // The next frames are kept, which keeps their buffers.
   void Hold(bool hold);
   size_t Held() const;
@@ -44,6 +46,7 @@ class CameraWatch {
   CondVar changed_;
   uint64_t frames_ VS_GUARDED_BY(mutex_) = 0;
   FramePtr last_ VS_GUARDED_BY(mutex_);
+  uint64_t gapless_ VS_GUARDED_BY(mutex_) = 0;
   bool out_of_order_ VS_GUARDED_BY(mutex_) = false;
   bool hold_ VS_GUARDED_BY(mutex_) = false;
   std::vector<FramePtr> held_ VS_GUARDED_BY(mutex_);

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "engine/base/str.h"
 #include "engine/camera/camera_hub.h"
 #include "engine/camera/gvcp.h"
 #include "engine/camera/stereo_source.h"
@@ -23,8 +24,8 @@ using ::testing::HasSubstr;
 using ::testing::SizeIs;
 using namespace std::chrono_literals;
 
-constexpr char kTriggered[] =
-    "BinningHorizontal=2&BinningVertical=2&TriggerMode=On&TriggerSource=Line1";
+// Small pictures, so that even a busy machine renders both of every pair in time.
+constexpr char kTriggered[] = "Width=64&Height=48&TriggerMode=On&TriggerSource=Line1";
 constexpr char kFree[] = "BinningHorizontal=2&BinningVertical=2";
 
 std::string Left(const std::string& options) { return "gev:21000001?" + options; }
@@ -69,6 +70,19 @@ class PairWatch {
     return wrong_;
   }
   StereoStats Stats() { return source_->Stats(); }
+  // For the message of a failed assertion.
+  std::string Describe() {
+    const StereoStats s = Stats();
+    const auto side = [](const CameraStats& camera, const Unpaired& unpaired) {
+      return Str(CameraStateName(camera.state), " \"", camera.last_error, "\", frames ",
+                 camera.frames, ", lost ", camera.lost, ", incomplete ", camera.incomplete,
+                 ", unpaired ", unpaired.no_counterpart, " + ", unpaired.overflow, " + ",
+                 unpaired.out_of_order);
+    };
+    return Str("left ", side(s.left, s.pairing.left), "; right ", side(s.right, s.pairing.right),
+               "; pairs ", s.pairing.pairs, ", tolerance ", s.pairing.tolerance_ns,
+               " ns, skew p99 ", s.pairing.skew_p99_ns, " ns");
+  }
 
  private:
   void Take(const StereoFrame& pair) {
@@ -105,7 +119,7 @@ TEST_F(GevRig, IsPairedByTimeWhateverItsClocksShow) {
   StartRig({"--right-offset-ms", "3000", "--left-drift-ppm", "100", "--right-drift-ppm", "-100"});
   PairWatch watch(Left(kTriggered), Right(kTriggered), {.drift_ppm = 100},
                   {.offset_ns = 3'000'000'000, .drift_ppm = -100});
-  ASSERT_TRUE(watch.WaitForPairs(120));
+  ASSERT_TRUE(watch.WaitForPairs(120)) << watch.Describe();
   EXPECT_EQ(watch.WrongPairs(), 0u);
   const StereoStats stats = watch.Stats();
   EXPECT_EQ(stats.left.rejected_stale, 0u);
@@ -117,24 +131,24 @@ TEST_F(GevRig, IsPairedByTimeWhateverItsClocksShow) {
 TEST_F(GevRig, KeepsPairsRightWhenWholePicturesAreLost) {
   StartRig({"--fault", "right drop-frames 0.3"});
   PairWatch watch(Left(kTriggered), Right(kTriggered));
-  ASSERT_TRUE(watch.WaitForPairs(60));
+  ASSERT_TRUE(watch.WaitForPairs(60)) << watch.Describe();
   EXPECT_EQ(watch.WrongPairs(), 0u);
   const StereoStats stats = watch.Stats();
   EXPECT_GT(stats.right.lost, 0u);
   EXPECT_GT(stats.pairing.left.no_counterpart, 0u);
 }
 
+// Of 40 packets a picture, one in 50 is lost: without resend, 20 whole pictures in a row would come
+// once in ten million times.
 TEST_F(GevRig, MendsLostPacketsByAskingForThemAgain) {
-  StartRig({"--only", "left", "--fault", "drop 0.01"});
+  StartRig({"--only", "left", "--fault", "drop 0.02"});
   CameraWatch watch(Left(kFree));
   ASSERT_TRUE(watch.Start());
-  ASSERT_TRUE(watch.WaitForFrames(100)) << watch.Describe();
+  ASSERT_TRUE(WaitUntil([&] { return watch.GaplessFrames() >= 20; })) << watch.Describe();
   const CameraStats stats = watch.camera().Stats();
   EXPECT_GT(stats.resend_requests, 0u);
   EXPECT_GT(stats.resent, 0u);
   EXPECT_FALSE(watch.OutOfOrder());
-  // A machine that is busy for longer than the camera remembers its pictures costs a few.
-  EXPECT_LT(stats.incomplete + stats.lost, 10u) << watch.Describe();
 }
 
 TEST_F(GevRig, LosesPicturesWithoutResend) {
@@ -163,7 +177,7 @@ TEST_F(GevRig, NeverLetsAStalePicturePass) {
 TEST_F(GevRig, ComesBackAsAPairWhenItWasKilledAndStartedAgain) {
   StartRig();
   PairWatch watch(Left(kTriggered), Right(kTriggered));
-  ASSERT_TRUE(watch.WaitForPairs(10));
+  ASSERT_TRUE(watch.WaitForPairs(10)) << watch.Describe();
   rig_->Kill();
   ASSERT_TRUE(WaitUntil([&] {
     const StereoStats stats = watch.Stats();
@@ -175,7 +189,7 @@ TEST_F(GevRig, ComesBackAsAPairWhenItWasKilledAndStartedAgain) {
     const StereoStats stats = watch.Stats();
     return stats.left.reconnects == 1 && stats.right.reconnects == 1;
   }));
-  ASSERT_TRUE(watch.WaitForPairs(10));
+  ASSERT_TRUE(watch.WaitForPairs(10)) << watch.Describe();
   EXPECT_EQ(watch.WrongPairs(), 0u);
 }
 

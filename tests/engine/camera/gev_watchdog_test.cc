@@ -13,7 +13,7 @@ constexpr int64_t kPeriodNs = 33 * kMs;
 // A free-running camera that has just delivered a picture at time 0.
 GevWatchdog Streaming() {
   GevWatchdog watchdog;
-  watchdog.Restart(-2000 * kMs, false);
+  watchdog.Restart(-2000 * kMs, false, 0);
   watchdog.Picture(0, kPeriodNs);
   return watchdog;
 }
@@ -35,9 +35,16 @@ TEST(GevWatchdog, WaitsThreePeriodsForASlowCamera) {
 
 TEST(GevWatchdog, GivesTheFirstPictureASecond) {
   GevWatchdog watchdog;
-  watchdog.Restart(0, false);
+  watchdog.Restart(0, false, 0);
   EXPECT_EQ(watchdog.Check(999 * kMs), Action::kNone);
   EXPECT_EQ(watchdog.Check(1000 * kMs), Action::kAsk);
+}
+
+TEST(GevWatchdog, BelievesACameraThatSaysItIsSlow) {
+  GevWatchdog watchdog;
+  watchdog.Restart(0, false, 10'000 * kMs);
+  EXPECT_EQ(watchdog.Check(29'999 * kMs), Action::kNone);
+  EXPECT_EQ(watchdog.Check(30'000 * kMs), Action::kAsk);
 }
 
 TEST(GevWatchdog, RecoversWithTheNextPicture) {
@@ -77,7 +84,7 @@ TEST(GevWatchdog, GivesUpACameraThatAnswersButSendsNothing) {
 
 TEST(GevWatchdog, LetsATriggeredCameraBeSilentAsLongAsItAnswers) {
   GevWatchdog watchdog;
-  watchdog.Restart(0, true);
+  watchdog.Restart(0, true, 0);
   for (int64_t now_ms = 0; now_ms < 60'000; now_ms += 10) {
     const Action action = watchdog.Check(now_ms * kMs);
     ASSERT_TRUE(action == Action::kNone || action == Action::kAsk);
