@@ -88,14 +88,14 @@ Sensor::Sensor(const SensorSettings& settings, double sensitivity, const SensorN
 }
 
 void Sensor::ReadRow(const Light* light, int x, int y, int count, uint8_t* grey) const {
-  static const std::vector<int16_t> kDeviateTable = MakeDeviates();
+  static const std::vector<int16_t> deviates = MakeDeviates();
   const Response response = {grey_per_light_, black_grey_, read_variance_, variance_per_grey_};
   for (int begin = x; begin < x + count;) {
     const int run = begin / kRunPixels;
     const int end = std::min(x + count, (run + 1) * kRunPixels);
     const uint64_t place = Hash(noise_key_ + (static_cast<uint64_t>(y) << 16) + run);
     const int16_t* deviate =
-        &kDeviateTable[(place & (kDeviates - 1)) + static_cast<size_t>(begin % kRunPixels)];
+        &deviates[(place & (kDeviates - 1)) + static_cast<size_t>(begin % kRunPixels)];
     Respond(response, light + (begin - x), deviate, end - begin, grey + (begin - x));
     begin = end;
   }

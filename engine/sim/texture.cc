@@ -57,8 +57,8 @@ std::vector<float> MakeTexels(int size) {
 Texture::Texture() : texels_(Texels()) {}
 
 const float* Texture::Texels() {
-  static const std::vector<float> kTexels = MakeTexels(kSize);
-  return kTexels.data();
+  static const std::vector<float> texels = MakeTexels(kSize);
+  return texels.data();
 }
 
 }  // namespace vs::sim

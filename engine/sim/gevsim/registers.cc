@@ -36,9 +36,9 @@ Span Command(uint32_t address) { return {address + 4, true, true, 0, 1}; }
 
 // Every register there is, by where it begins.
 const std::map<uint32_t, Span>& Map() {
-  static const std::map<uint32_t, Span> kMap = [] {
+  static const std::map<uint32_t, Span> map = [] {
     using namespace reg;  // NOLINT(google-build-using-namespace)
-    std::map<uint32_t, Span> map = {
+    std::map<uint32_t, Span> made = {
         {kVersion, ReadOnly(kUserName)},
         {kUserName, {kDiscoveryEnd, true, true}},
         {kXmlUrl, ReadOnly(kSecondXmlUrl + 512)},
@@ -83,13 +83,13 @@ const std::map<uint32_t, Span>& Map() {
         {kTriggerSoftware, Command(kTriggerSoftware)},
     };
     for (const uint32_t step : {0u, kTriggerStep}) {
-      map[kTriggerMode + step] = Writable(kTriggerMode + step, 0, 1);
-      map[kTriggerSource + step] = Writable(kTriggerSource + step, 0, 2);
-      map[kTriggerActivation + step] = Writable(kTriggerActivation + step, 0, 1);
+      made[kTriggerMode + step] = Writable(kTriggerMode + step, 0, 1);
+      made[kTriggerSource + step] = Writable(kTriggerSource + step, 0, 2);
+      made[kTriggerActivation + step] = Writable(kTriggerActivation + step, 0, 1);
     }
-    return map;
+    return made;
   }();
-  return kMap;
+  return map;
 }
 
 const Span* Find(uint32_t address) {

@@ -15,7 +15,7 @@ class FolderPictures : public testing::Test {
  protected:
   // A picture of one grey level, in the simplest format there is.
   std::string WriteGrey(const std::string& name, int width, int height, uint8_t level) {
-    const std::string path = folder_.path() / name;
+    std::string path = folder_.path() / name;
     std::ofstream(path, std::ios::binary)
         << "P5\n"
         << width << " " << height << "\n255\n"

@@ -134,9 +134,9 @@ TEST_F(GevSim, NumbersFramesUpTo65535AndLeavesOutZero) {
   Start({"--fps", "0", "--first-block-id", "65534"});
   GigeClient client("127.0.0.1");
   OpenTriggered(client, TriggerSource::kLine1);
-  std::vector<uint16_t> ids;
-  for (int i = 0; i < 4; ++i) ids.push_back(Pulse(client)->block_id);
-  EXPECT_EQ(ids, (std::vector<uint16_t>{65534, 65535, 1, 2}));
+  for (const uint16_t expected : {65534, 65535, 1, 2}) {
+    EXPECT_EQ(Pulse(client)->block_id, expected);
+  }
 }
 
 TEST_F(GevSim, SendsLostPacketsAgainUntilTheyArrive) {
