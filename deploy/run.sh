@@ -34,7 +34,7 @@ number --fps "$fps"
 number --port "$port"
 
 deploy/prepare.sh
-bin=$PWD/build/release
+bin=$PWD/build/release/bin
 
 # What we start is ours to end, whatever happens.
 children=()
@@ -63,12 +63,12 @@ chmod 700 "$data"
 [[ -e $data/rigs/demo.json ]] || cp deploy/demo/rig.json "$data/rigs/demo.json"
 sed "s|@DATA@|$data|; s|@PORT@|$port|" deploy/demo/server.conf >"$work/server.conf"
 
-"$bin/engine/sim/gevsim/gevsim" --fps "$fps" ${folder:+--folder "$folder"} \
+"$bin/gevsim" --fps "$fps" ${folder:+--folder "$folder"} \
   >"$work/cameras" 2>"$work/cameras.err" &
 children+=($!)
 await "$work/cameras" '^gevsim ready' $! 'the simulated rig'
 
-"$bin/server/visionserver" --config "$work/server.conf" --report 1 \
+"$bin/visionserver" --config "$work/server.conf" --report 1 \
   >"$work/server" 2>"$work/server.err" &
 server=$!
 children+=("$server")
@@ -88,9 +88,9 @@ VisionServer streams depth from two simulated GigE cameras: $(rate)
   admin        ${password:-(the password that you chose at the first login)}
 
 Try next:
-  $bin/client/visionctl login admin --server $address --fingerprint $fingerprint
-  $bin/client/visionctl depth stereo_depth --frames 5 --out depth --stats
-  $bin/client/visionctl set stereo_depth match.p2 20
+  $bin/visionctl login admin --server $address --fingerprint $fingerprint
+  $bin/visionctl depth stereo_depth --frames 5 --out depth --stats
+  $bin/visionctl set stereo_depth match.p2 20
 
 TEXT
 [[ -n $duration ]] || echo 'Ctrl-C ends it.'

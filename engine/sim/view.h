@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "engine/image/pixel_rect.h"
 #include "engine/image/stereo_rig.h"
 #include "engine/sim/scene.h"
 #include "engine/sim/truth.h"
@@ -10,14 +11,6 @@
 namespace vs::sim {
 
 enum class Side { kLeft, kRight };
-
-// A rectangle of pixels; empty when width or height is 0.
-struct PixelRect {
-  int x = 0;
-  int y = 0;
-  int width = 0;
-  int height = 0;
-};
 
 // A camera as a ray caster sees it. Pixel (x, y) looks from the origin of the view's own frame
 // along (ray_x, ray_y, 1), both found at index y * width + x; lens distortion is all in there. So a

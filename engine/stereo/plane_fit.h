@@ -5,7 +5,7 @@
 #include "engine/base/status.h"
 #include "engine/image/buffer.h"
 #include "engine/image/depth_map.h"
-#include "engine/stereo/pixel_rect.h"
+#include "engine/image/pixel_rect.h"
 
 namespace vs {
 

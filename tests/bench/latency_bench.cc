@@ -6,16 +6,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "engine/base/clock.h"
-#include "server/convert/sequence.h"
-#include "server/sequences/stored_sequence.h"
-#include "server/storage/atomic_file.h"
 #include "tests/server/streams/published.h"
+#include "tests/server/vision/demo.h"
 #include "tests/server/vision/vision_fixture.h"
 #include "tests/support/gevsim.h"
 #include "tests/support/network_namespace.h"
@@ -85,31 +82,11 @@ int Fail(const std::string& what) {
 }
 
 int Measure(const Options& options) {
-  const std::filesystem::path demo = std::filesystem::path(VS_SOURCE_DIR) / "deploy" / "demo";
   const auto cameras = StartGevSim({"--fps", options.fps});
   if (!cameras) return Fail(cameras.error().ToString());
   TestServer server;
-  const auto rig = ReadFile(demo / "rig.json", 1 << 20);
-  const auto text = ReadFile(demo / "stereo_depth.json", 1 << 20);
-  if (!rig || !text) return Fail("deploy/demo cannot be read");
-  const Status stored = WriteFileAtomically(server.data_dir() / "rigs" / "demo.json", *rig);
-  const auto sequence = ParseSequenceFile(*text);
-  if (!stored.ok() || !sequence) return Fail("deploy/demo cannot be used");
-
-  const std::string token = server.Token(Role::kEngineer);
-  const auto sequences = pb::SequenceService::NewStub(server.Connect());
-  pb::CreateSequenceRequest create;
-  create.set_id(sequence->spec.id);
-  *create.mutable_spec() = ToProto(sequence->spec);
-  pb::Sequence created;
-  pb::StartSequenceRequest start;
-  start.set_id(sequence->spec.id);
-  pb::SequenceState state;
-  grpc::Status status = sequences->CreateSequence(ClientCall(token).context(), create, &created);
-  if (status.ok()) {
-    status = sequences->StartSequence(ClientCall(token).context(), start, &state);
-  }
-  if (!status.ok()) return Fail(status.error_message());
+  if (const Status demo = RestartAsDemo(&server); !demo.ok()) return Fail(demo.ToString());
+  const std::string token = server.Token(Role::kOperator);
 
   const SystemClock clock;
   Budget budget;

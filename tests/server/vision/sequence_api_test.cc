@@ -363,7 +363,7 @@ TEST_F(SequenceApi, WhatASequenceLogsIsWatchedListedQueriedAndExported) {
   EXPECT_EQ(30, answer.table().rows(0).cells(0).int_value());
   query.set_sql("DROP TABLE result");
   query.clear_arguments();
-  EXPECT_EQ(grpc::StatusCode::PERMISSION_DENIED,
+  EXPECT_EQ(grpc::StatusCode::INVALID_ARGUMENT,
             results_->QueryResults(ClientCall(operator_).context(), query, &answer).error_code());
 
   ClientCall export_call(operator_);
