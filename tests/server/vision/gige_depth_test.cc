@@ -36,8 +36,6 @@
 namespace vs::test {
 namespace {
 
-constexpr std::chrono::seconds kPatience{60};
-
 class GigeDepth : public testing::Test {
  protected:
   // The cameras, then a logged-in client of the server.
