@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <utility>
 
 #include <opencv2/calib3d.hpp>
@@ -13,17 +15,38 @@
 namespace vs {
 namespace {
 
-// The camera matrix for pictures of another size with the same field of view. Pixel centres are
-// integers, hence the half pixels.
-cv::Matx33d CameraMatrix(const CameraModel& camera, int width, int height) {
-  const double sx = static_cast<double>(width) / camera.width;
-  const double sy = static_cast<double>(height) / camera.height;
-  return {camera.fx_px * sx,
+constexpr int kMaxBinning = 16;
+
+// Whether binning makes `size` of `calibrated` pixels in one direction. What does not fill a binned
+// pixel is cut off at the far end, so the first pixels stay where they are.
+bool IsBinned(int size, int calibrated, int binning) {
+  const int whole = calibrated / binning;
+  return size == whole || size == whole - whole % 2;
+}
+
+// Size of the pictures over the calibrated one, the same in both directions; nullopt when no such
+// scale makes one of the other. Not the ratio of the sizes, which binning rounds.
+std::optional<double> ScaleOf(const CameraModel& camera, int width, int height) {
+  if (int64_t{width} * camera.height == int64_t{height} * camera.width) {
+    return static_cast<double>(width) / camera.width;
+  }
+  for (int binning = 2; binning <= kMaxBinning; ++binning) {
+    if (IsBinned(width, camera.width, binning) && IsBinned(height, camera.height, binning)) {
+      return 1.0 / binning;
+    }
+  }
+  return std::nullopt;
+}
+
+// The camera matrix for pictures of another scale. Pixel centres are integers, hence the half
+// pixels.
+cv::Matx33d CameraMatrix(const CameraModel& camera, double scale) {
+  return {camera.fx_px * scale,
           0,
-          (camera.cx_px + 0.5) * sx - 0.5,
+          (camera.cx_px + 0.5) * scale - 0.5,
           0,
-          camera.fy_px * sy,
-          (camera.cy_px + 0.5) * sy - 0.5,
+          camera.fy_px * scale,
+          (camera.cy_px + 0.5) * scale - 0.5,
           0,
           0,
           1};
@@ -55,21 +78,20 @@ RemapTable MakeTable(const cv::Matx33d& camera, const CameraModel& model,
   return table;
 }
 
-Status CheckSize(const StereoRig& rig, int width, int height) {
+Result<double> CheckedScale(const StereoRig& rig, int width, int height) {
   const CameraModel& camera = rig.left;
   if (rig.right.width != camera.width || rig.right.height != camera.height) {
     return InvalidArgument(Str("stereo rig \"", rig.name, "\": the left camera has ", camera.width,
                                " x ", camera.height, " px, the right one ", rig.right.width, " x ",
                                rig.right.height, " px; only equal cameras can be rectified"));
   }
-  // Binning drops an incomplete last row or column, so a pixel more or less is the same view.
-  const double scale = static_cast<double>(width) / camera.width;
-  const bool same_view = width >= 16 && height >= 16 && width <= 16384 && height <= 16384 &&
-                         std::abs(height - camera.height * scale) <= 1 + scale;
-  if (same_view) return {};
-  return InvalidArgument(Str("stereo rig \"", rig.name, "\" is calibrated for ", camera.width,
-                             " x ", camera.height, " px, the pictures have ", width, " x ", height,
-                             " px; use the full picture, binned if needed, or calibrate again"));
+  const bool served = width >= 16 && height >= 16 && width <= 16384 && height <= 16384;
+  if (const auto scale = ScaleOf(camera, width, height); served && scale) return *scale;
+  return InvalidArgument(
+      Str("stereo rig \"", rig.name, "\" is calibrated for ", camera.width, " x ", camera.height,
+          " px, the pictures have ", width, " x ", height,
+          " px; use the full picture, binned alike in both directions if needed, "
+          "resize pictures after rectification only, or calibrate again"));
 }
 
 }  // namespace
@@ -88,13 +110,13 @@ Rectifier::Rectifier(std::shared_ptr<const Maps> maps) : maps_(std::move(maps)) 
 Result<Rectifier> Rectifier::Make(const StereoRig& rig, int width, int height,
                                   const RectifyOptions& options) {
   VS_RETURN_IF_ERROR(ValidateRig(rig));
-  VS_RETURN_IF_ERROR(CheckSize(rig, width, height));
+  VS_ASSIGN_OR_RETURN(const double scale, CheckedScale(rig, width, height));
   if (!(options.alpha >= 0 && options.alpha <= 1)) {
     return InvalidArgument(Str("rectification: alpha is ", options.alpha, "; it must be 0 .. 1"));
   }
   const cv::Size size(width, height);
-  const cv::Matx33d left_camera = CameraMatrix(rig.left, width, height);
-  const cv::Matx33d right_camera = CameraMatrix(rig.right, width, height);
+  const cv::Matx33d left_camera = CameraMatrix(rig.left, scale);
+  const cv::Matx33d right_camera = CameraMatrix(rig.right, scale);
   const cv::Matx33d rotation(rig.right_from_left_rotation.data());
   const cv::Vec3d translation(rig.right_from_left_translation_m.data());
   auto maps = std::make_shared<Maps>();

@@ -26,9 +26,13 @@ struct RectifyOptions {
 // after that it is immutable and may be used by several threads.
 class Rectifier {
  public:
-  // For pictures of width x height pixels: the calibrated size or the same field of view shrunk,
-  // for example by binning. INVALID_ARGUMENT when the rig is invalid, the two cameras differ in
-  // size, or width x height has another aspect ratio than the calibrated pictures.
+  // For pictures of width x height pixels: the calibrated size, an exact multiple of it, or what a
+  // camera makes of it when it bins n x n pixels (n = 2 .. 16): it drops the rest of rows and
+  // columns, and some cameras one more to get an even size. INVALID_ARGUMENT for any other size,
+  // when the rig is invalid or when the two cameras differ in size.
+  //
+  // The size alone tells how a picture came about: a window of the sensor as large as a binned
+  // picture is taken for one, and rectified wrongly. Calibrate a window as it is.
   static Result<Rectifier> Make(const StereoRig& rig, int width, int height,
                                 const RectifyOptions& options = {});
 

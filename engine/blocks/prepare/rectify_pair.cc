@@ -96,10 +96,12 @@ class RectifyPair final : public Block {
   RectifyOptions options_;
 };
 
-VS_REGISTER_BLOCK(RectifyPair,
-                  {.category = "Prepare",
-                   .doc = "Removes lens distortion and turns both views parallel, by the cameras' "
-                          "calibration. Matching needs such a pair."});
+VS_REGISTER_BLOCK(
+    RectifyPair,
+    {.category = "Prepare",
+     .doc = "Removes lens distortion and turns both views parallel, by the cameras' "
+            "calibration. Matching needs such a pair. Takes pictures of the calibrated "
+            "size or binned ones; a window of the sensor needs its own calibration."});
 
 }  // namespace
 }  // namespace vs

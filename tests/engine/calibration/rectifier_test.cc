@@ -26,15 +26,14 @@ Point Rotate(const std::array<double, 9>& r, const Point& p) {
           r[6] * p[0] + r[7] * p[1] + r[8] * p[2]};
 }
 
-// Where a camera with distortion sees a point of its own frame, in pictures of `width` px.
-Pixel Project(const CameraModel& c, const Point& p, int width) {
+// Where a camera with distortion sees a point of its own frame, in pictures of this scale.
+Pixel Project(const CameraModel& c, const Point& p, double scale) {
   const double x = p[0] / p[2];
   const double y = p[1] / p[2];
   const double r2 = x * x + y * y;
   const double radial = 1 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
   const double xd = x * radial + 2 * c.p1 * x * y + c.p2 * (r2 + 2 * x * x);
   const double yd = y * radial + c.p1 * (r2 + 2 * y * y) + 2 * c.p2 * x * y;
-  const double scale = static_cast<double>(width) / c.width;
   return {(c.fx_px * xd + c.cx_px + 0.5) * scale - 0.5,
           (c.fy_px * yd + c.cy_px + 0.5) * scale - 0.5};
 }
@@ -81,9 +80,10 @@ class RectifierTest : public testing::Test {
     return image;
   }
 
-  // Draws points as both cameras see them, rectifies, and compares with the ideal pair.
-  void ExpectIdealPair(int width, int height, const RectifyOptions& options) {
-    const StereoRig rig = SampleRig();
+  // Draws points as both cameras see them at this scale, rectifies, and compares with the ideal
+  // pair.
+  void ExpectIdealPair(int width, int height, double scale, const RectifyOptions& options,
+                       const StereoRig& rig = SampleRig()) {
     const auto rectifier = Rectifier::Make(rig, width, height, options);
     ASSERT_TRUE(rectifier.has_value()) << rectifier.error().ToString();
     const RectifiedGeometry& g = rectifier->geometry();
@@ -98,8 +98,8 @@ class RectifierTest : public testing::Test {
         Point q = Rotate(rig.right_from_left_rotation, p);
         for (size_t k = 0; k < 3; ++k) q[k] += rig.right_from_left_translation_m[k];
         points.push_back(p);
-        DrawDot(Project(rig.left, p, width), &left);
-        DrawDot(Project(rig.right, q, width), &right);
+        DrawDot(Project(rig.left, p, scale), &left);
+        DrawDot(Project(rig.right, q, scale), &right);
       }
     }
     StereoFrame raw{.left = MakeFrame(left), .right = MakeFrame(right), .number = 9};
@@ -129,13 +129,46 @@ class RectifierTest : public testing::Test {
 };
 
 TEST_F(RectifierTest, PutsEachPointIntoOneRowWhereTheGeometrySays) {
-  ExpectIdealPair(1296, 966, {});
+  ExpectIdealPair(1296, 966, 1, {});
 }
 
-TEST_F(RectifierTest, ServesBinnedPicturesOfTheSameRig) { ExpectIdealPair(648, 483, {}); }
+// The calibrated 966 rows hold 241.5 groups of four: the camera leaves the half one out. 483 binned
+// rows are odd, so some cameras send 482.
+TEST_F(RectifierTest, ServesBinnedPicturesOfTheSameRig) {
+  ExpectIdealPair(648, 483, 1.0 / 2, {});
+  ExpectIdealPair(648, 482, 1.0 / 2, {});
+  ExpectIdealPair(432, 322, 1.0 / 3, {});
+  ExpectIdealPair(324, 241, 1.0 / 4, {});
+  ExpectIdealPair(324, 240, 1.0 / 4, {});
+}
+
+// Binning rounds columns as it rounds rows: 1297 / 2 and 1297 / 3 leave one column over.
+TEST_F(RectifierTest, ServesPicturesWhoseColumnsBinningRounds) {
+  StereoRig rig = SampleRig();
+  rig.left.width = rig.right.width = 1297;
+  ExpectIdealPair(648, 483, 1.0 / 2, {}, rig);
+  ExpectIdealPair(432, 322, 1.0 / 3, {}, rig);
+}
+
+TEST_F(RectifierTest, TheFocalLengthOfBinnedPicturesIsThatOfTheRigDivided) {
+  StereoRig rig = SampleRig();
+  for (CameraModel* camera : {&rig.left, &rig.right}) {
+    *camera = {
+        .width = 1296, .height = 966, .fx_px = 1600, .fy_px = 1600, .cx_px = 647.5, .cy_px = 480.5};
+  }
+  rig.right_from_left_rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  rig.right_from_left_translation_m = {-0.12, 0, 0};
+  const auto geometry = [&rig](int width, int height) {
+    const auto rectifier = Rectifier::Make(rig, width, height);
+    EXPECT_TRUE(rectifier.has_value()) << rectifier.error().ToString();
+    return rectifier ? rectifier->geometry() : RectifiedGeometry();
+  };
+  EXPECT_NEAR(geometry(648, 482).focal_px, 800, 1e-6);
+  EXPECT_NEAR(geometry(324, 241).focal_px, 400, 1e-6);
+}
 
 TEST_F(RectifierTest, MayShowEverythingOrInterpolateCubically) {
-  ExpectIdealPair(1296, 966, {.alpha = 1, .interpolation = Interpolation::kCubic});
+  ExpectIdealPair(1296, 966, 1, {.alpha = 1, .interpolation = Interpolation::kCubic});
 }
 
 TEST_F(RectifierTest, KeepsWhatIsKnownOfThePairAndDropsItsTruth) {
@@ -173,8 +206,19 @@ TEST_F(RectifierTest, RefusesWhatItCannotServe) {
   EXPECT_EQ(
       other_view.error().message(),
       "stereo rig \"sample\" is calibrated for 1296 x 966 px, the pictures have 648 x 400 px; "
-      "use the full picture, binned if needed, or calibrate again");
-  EXPECT_TRUE(Rectifier::Make(SampleRig(), 432, 322).has_value()) << "binned by three";
+      "use the full picture, binned alike in both directions if needed, resize pictures after "
+      "rectification only, or calibrate again");
+  struct Size {
+    int width, height;
+  };
+  // A row or column off; resized with rounding; binned 2 x 1.
+  for (const auto& [width, height] :
+       {Size{1296, 965}, Size{1295, 966}, Size{648, 481}, Size{647, 483}, Size{324, 242},
+        Size{1037, 773}, Size{648, 966}, Size{8, 6}}) {
+    EXPECT_EQ(Rectifier::Make(SampleRig(), width, height).error().code(),
+              StatusCode::kInvalidArgument)
+        << width << " x " << height;
+  }
 
   StereoRig unequal = SampleRig();
   unequal.right.width = 1300;
