@@ -14,6 +14,8 @@ namespace {
 
 // What a packet occupies on an Ethernet besides IP: preamble, header, checksum, gap.
 constexpr int kEthernetBytes = 8 + 14 + 4 + 12;
+// Sleeping costs more than sending a little early.
+constexpr int64_t kShortestSleepNs = 20'000;
 
 int64_t Now() { return SystemClock().MonotonicNs(); }
 
@@ -31,13 +33,14 @@ msghdr MessageOf(GvspPacket& packet, const sockaddr_in& to) {
   return message;
 }
 
-int64_t PacketNs(const GvspFrame& frame, const Pacing& pacing) {
-  const double wire_bytes = frame.packet_bytes + kEthernetBytes;
-  const double wire_ns = pacing.link_mbps > 0 ? wire_bytes * 8000 / pacing.link_mbps : 0;
-  return static_cast<int64_t>(wire_ns) + pacing.packet_delay_ns;
-}
-
 }  // namespace
+
+PacketSchedule PacketSchedule::Make(int64_t start_ns, int packet_bytes, const Pacing& pacing) {
+  const double wire_bytes = packet_bytes + kEthernetBytes;
+  const double wire_ns = pacing.link_mbps > 0 ? wire_bytes * 8000 / pacing.link_mbps : 0;
+  return {.start_ns = start_ns,
+          .packet_ns = static_cast<int64_t>(wire_ns) + pacing.packet_delay_ns};
+}
 
 Status StreamSender::Open(uint32_t address) {
   VS_ASSIGN_OR_RETURN(socket_, UdpSocket::Bind({address, 0}));
@@ -56,16 +59,14 @@ void StreamSender::Send(const std::shared_ptr<const GvspFrame>& frame, const End
   Keep(frame);
   const sockaddr_in address = ToSockaddr(to);
   const std::vector<uint32_t> order = OrderOf(PacketCount(*frame), faults);
-  const int64_t packet_ns = PacketNs(*frame, pacing);
-  const int64_t start_ns = Now();
+  const PacketSchedule schedule = PacketSchedule::Make(Now(), frame->packet_bytes, pacing);
   // A long delay between packets must not come in bursts of sixteen.
   const int burst = pacing.packet_delay_ns > 0 ? 1 : kBurst;
   for (size_t sent = 0; sent < order.size() && !stop;) {
     const int count = static_cast<int>(std::min<size_t>(burst, order.size() - sent));
     SendBurst(*frame, &order[sent], count, address);
     sent += static_cast<size_t>(count);
-    const int64_t due_ns = start_ns + static_cast<int64_t>(sent) * packet_ns;
-    if (due_ns > Now() + 20'000) SleepUntil(due_ns);
+    if (schedule.DueNs(sent) > Now() + kShortestSleepNs) SleepUntil(schedule.DueNs(sent));
   }
   ++counters_.frames;
 }

@@ -29,6 +29,17 @@ struct Pacing {
   int64_t packet_delay_ns = 0;  // between any two packets (GevSCPD)
 };
 
+// When the packets of one frame are due.
+struct PacketSchedule {
+  int64_t start_ns = 0;
+  int64_t packet_ns = 0;  // for which a packet occupies the link
+
+  // `packet_bytes` as in GvspFrame; all packets count as full.
+  static PacketSchedule Make(int64_t start_ns, int packet_bytes, const Pacing& pacing);
+  // Packet `number`, from 0, does not leave before.
+  int64_t DueNs(size_t number) const { return start_ns + static_cast<int64_t>(number) * packet_ns; }
+};
+
 // Sends frames as packets, spread over the time that the camera's network link would need, and
 // keeps the last few for clients that have missed something.
 class StreamSender {
