@@ -39,6 +39,11 @@ enum class SubPixel : uint8_t {
 // kBirchfieldTomasi and kSad (the mean over the window, so that p1 and p2 keep their meaning when
 // the window changes). Every cost is at most kMaxCost and p2 at most kMaxP2, so that a path cost
 // never exceeds 127 and all arithmetic fits 8 bits.
+//
+// Penalties are those of one pixel, not of a window, and what exceeds the limits is refused, never
+// rescaled: p1 and p2 compute what they say. OpenCV sums the cost over its M x N block instead, so
+// its P1 = 8 * M * N and P2 = 32 * M * N are about p1 = 8 and p2 = 32 here, for every window:
+// divide by the number of pixels (and of channels, where OpenCV counts them).
 struct SgmSettings {
   // Search range: min_disparity .. min_disparity + num_disparities - 1 px. Pixel (x, y) of the left
   // view is compared with (x - disparity, y) of the right one.
