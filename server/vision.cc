@@ -22,6 +22,11 @@ Result<std::map<std::string, CameraUri>> CamerasOf(const config::ServerConfig& c
   return cameras;
 }
 
+HostFolders FoldersOf(const config::ServerConfig& config, const std::filesystem::path& data_dir) {
+  return {.data_dir = data_dir,
+          .picture_roots = {config.picture_root().begin(), config.picture_root().end()}};
+}
+
 int WorkersOf(const config::ServerConfig& config) {
   const int workers = config.processing().workers();
   return workers > 0 ? workers : static_cast<int>(std::thread::hardware_concurrency());
@@ -32,16 +37,16 @@ int WorkersOf(const config::ServerConfig& config) {
 Result<std::unique_ptr<Vision>> Vision::Open(const config::ServerConfig& config,
                                              const std::filesystem::path& data_dir,
                                              const Clock& clock) {
-  std::unique_ptr<Vision> vision(new Vision());
-  VS_RETURN_IF_ERROR(vision->OpenStores(config, data_dir, clock));
+  std::unique_ptr<Vision> vision(new Vision(FoldersOf(config, data_dir)));
+  VS_RETURN_IF_ERROR(vision->OpenStores(config, clock));
   VS_RETURN_IF_ERROR(vision->MakeServices(config, clock));
   return vision;
 }
 
 Vision::~Vision() = default;
 
-Status Vision::OpenStores(const config::ServerConfig& config, const std::filesystem::path& data_dir,
-                          const Clock& clock) {
+Status Vision::OpenStores(const config::ServerConfig& config, const Clock& clock) {
+  const std::filesystem::path& data_dir = folders_.data_dir;
   const std::filesystem::path rigs =
       config.has_rigs_dir() ? std::filesystem::path(config.rigs_dir()) : data_dir / "rigs";
   const std::filesystem::path sequences = config.has_sequences_dir()
@@ -57,14 +62,18 @@ Status Vision::OpenStores(const config::ServerConfig& config, const std::filesys
                                                            .rigs = rigs_.get(),
                                                            .topics = &topics_,
                                                            .results = results_.get(),
-                                                           .data_dir = data_dir});
+                                                           .folders = folders_});
   streams_ = std::make_unique<StreamHub>(topics_, clock);
   return Status();
 }
 
 Status Vision::MakeServices(const config::ServerConfig& config, const Clock& clock) {
   VS_ASSIGN_OR_RETURN(auto cameras, CamerasOf(config));
-  for (const auto& [id, uri] : cameras) VS_RETURN_IF_ERROR(cameras_.Name(id, uri));
+  for (const auto& [id, uri] : cameras) {
+    if (Status status = cameras_.Name(id, uri); !status.ok()) {
+      return status.Annotated("camera " + id);
+    }
+  }
   sequence_service_ = std::make_unique<SequenceService>(*sequences_, *manager_);
   parameter_service_ = std::make_unique<ParameterService>(*manager_);
   stream_service_ = std::make_unique<StreamService>(*streams_, clock);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/clock.h"
+#include "engine/base/host_folders.h"
 #include "engine/base/status.h"
 #include "engine/camera/camera_hub.h"
 #include "engine/core/scheduler.h"
@@ -48,12 +49,12 @@ class Vision {
   CameraService& cameras() { return *camera_service_; }
 
  private:
-  Vision() = default;
-  Status OpenStores(const config::ServerConfig& config, const std::filesystem::path& data_dir,
-                    const Clock& clock);
+  explicit Vision(const HostFolders& folders) : folders_(folders), cameras_(folders) {}
+  Status OpenStores(const config::ServerConfig& config, const Clock& clock);
   Status MakeServices(const config::ServerConfig& config, const Clock& clock);
 
   // In the order in which they need each other; they go in the opposite one.
+  const HostFolders folders_;
   CameraHub cameras_;
   TopicHub topics_;
   std::unique_ptr<RigFolder> rigs_;

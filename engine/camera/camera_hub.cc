@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kAskTime{150};
 constexpr std::string_view kNamedScheme = "camera";
+constexpr std::string_view kFolderScheme = "file";
 
 }  // namespace
 
@@ -60,10 +61,12 @@ class CameraHub::Closer {
   std::vector<Closing> closing_ VS_GUARDED_BY(mutex_);
 };
 
-CameraHub::CameraHub() : closer_(std::make_shared<Closer>()) {}
+CameraHub::CameraHub(HostFolders folders)
+    : folders_(std::move(folders)), closer_(std::make_shared<Closer>()) {}
 CameraHub::~CameraHub() = default;
 
 Status CameraHub::Name(const std::string& name, const CameraUri& uri) {
+  if (const auto located = Located(uri); !located) return located.error();
   MutexLock lock(mutex_);
   if (names_.try_emplace(name, uri).second) return Status();
   return InvalidArgument(Str("two cameras are called ", Quoted(name)));
@@ -80,8 +83,17 @@ Result<CameraUri> CameraHub::Resolve(const CameraUri& uri) const {
                       "; there are: ", names.empty() ? "none" : names));
 }
 
+Result<CameraUri> CameraHub::Located(const CameraUri& uri) const {
+  if (uri.scheme != kFolderScheme) return uri;
+  VS_ASSIGN_OR_RETURN(const std::filesystem::path folder, PicturePath(folders_, uri.address));
+  CameraUri located = uri;
+  located.address = folder.string();
+  return located;
+}
+
 Result<std::shared_ptr<CameraSource>> CameraHub::Acquire(const CameraUri& asked) {
-  VS_ASSIGN_OR_RETURN(const CameraUri uri, Resolve(asked));
+  VS_ASSIGN_OR_RETURN(const CameraUri named, Resolve(asked));
+  VS_ASSIGN_OR_RETURN(const CameraUri uri, Located(named));
   MutexLock lock(mutex_);
   std::erase_if(open_, [](const Open& open) { return open.camera.expired(); });
   const auto found = std::ranges::find_if(open_, [&uri](const Open& open) {

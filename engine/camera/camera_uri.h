@@ -14,7 +14,9 @@ namespace vs {
 //   gev:21000001            GigE Vision camera by serial number
 //   gev-ip:192.168.1.20     GigE Vision camera by address
 //   sim:demo#left           the simulated scene, one of its two cameras
-//   file:/data/run7?pattern=*_left.png&loop=true&fps=30
+//   file:run7?pattern=*_left.png&loop=true&fps=30
+//                           pictures of a folder: below the server's data folder, or an absolute
+//                           path below a picture_root of its configuration
 //   camera:left             the camera of this name in the server's configuration
 // A key that starts with a capital is a feature of the camera (ExposureTimeAbs=5000), set in the
 // written order before it streams; any other key is an option of the driver. A character that would

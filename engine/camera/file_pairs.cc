@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "engine/base/host_folders.h"
 #include "engine/base/str.h"
 #include "engine/camera/image_file.h"
 
@@ -54,6 +55,12 @@ fs::path IfThere(const fs::path& file) {
   return fs::is_regular_file(file, ignored) ? file : fs::path();
 }
 
+// Empty when there is no such file; an error when the name leads out of the folder.
+Result<fs::path> IfThere(const fs::path& folder, const std::string& name) {
+  VS_ASSIGN_OR_RETURN(const fs::path file, PathBelow(folder, name));
+  return IfThere(file);
+}
+
 // The file whose name has `word` instead of the last "left"; empty when there is none.
 fs::path Sibling(const fs::path& left, const std::string& word, const char* extension) {
   std::string name = left.filename().string();
@@ -86,7 +93,7 @@ Result<fs::path> Optional(const fs::path& folder, const std::string& pattern,
                           const std::string& key) {
   if (pattern.empty()) return fs::path();
   VS_ASSIGN_OR_RETURN(const Naming naming, Naming::Parse(pattern));
-  return IfThere(folder / naming.NameOf(key));
+  return IfThere(folder, naming.NameOf(key));
 }
 
 }  // namespace
@@ -108,7 +115,7 @@ Result<std::vector<FilePair>> FindFilePairs(const FilePairOptions& options) {
     if (!key) continue;
     FilePair pair;
     pair.left = file;
-    pair.right = IfThere(options.folder / right.NameOf(*key));
+    VS_ASSIGN_OR_RETURN(pair.right, IfThere(options.folder, right.NameOf(*key)));
     if (pair.right.empty()) continue;
     VS_ASSIGN_OR_RETURN(pair.truth, Optional(options.folder, options.truth_pattern, *key));
     VS_ASSIGN_OR_RETURN(pair.visible, Optional(options.folder, options.visible_pattern, *key));

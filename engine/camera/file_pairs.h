@@ -17,7 +17,7 @@ struct FilePair {
 };
 
 // The pairs that the options describe, in counting order. Errors: INVALID_ARGUMENT (a pattern makes
-// no sense), NOT_FOUND (no folder, no pair; says what is missing).
+// no sense or leads out of the folder), NOT_FOUND (no folder, no pair; says what is missing).
 Result<std::vector<FilePair>> FindFilePairs(const FilePairOptions& options);
 
 }  // namespace vs

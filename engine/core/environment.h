@@ -1,10 +1,10 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "engine/base/clock.h"
+#include "engine/base/host_folders.h"
 #include "engine/base/status.h"
 #include "engine/image/stereo_rig.h"
 
@@ -31,7 +31,7 @@ struct Environment {
   const RigStore* rigs = nullptr;
   TopicHub* topics = nullptr;
   ResultSink* results = nullptr;
-  std::filesystem::path data_dir;  // where blocks may write; empty = nowhere
+  HostFolders folders;  // where blocks may read and, below the data folder, write
 };
 
 }  // namespace vs

@@ -111,6 +111,7 @@ class Checker {
     Require(!config.plaintext() || config.tls_certificate().empty(),
             "plaintext and tls_certificate contradict each other: keep one");
     Require(config.name().size() <= 64, "name has more than 64 bytes");
+    CheckPictureRoots(config);
     CheckRanges(config, &places_);
     CheckCameras(config);
   }
@@ -142,6 +143,16 @@ class Checker {
     if (range == kRanges.end() || (value >= range->min && value <= range->max)) return;
     faults_.Add(line,
                 Str(field.name(), " is ", value, ", it must be ", range->min, " to ", range->max));
+  }
+
+  void CheckPictureRoots(const config::ServerConfig& config) {
+    const FieldDescriptor* field =
+        config.GetDescriptor()->FindFieldByNumber(config::ServerConfig::kPictureRootFieldNumber);
+    for (int i = 0; i < config.picture_root_size(); ++i) {
+      if (!config.picture_root(i).empty()) continue;
+      faults_.Add(places_.GetLocation(field, i).line,
+                  "picture_root is empty: name a folder such as \"/srv/pictures\"");
+    }
   }
 
   void CheckCameras(const config::ServerConfig& config) {
@@ -230,6 +241,7 @@ Result<config::ServerConfig> ParseConfig(std::string_view text, std::string_view
   if (!config.has_rigs_dir()) config.set_rigs_dir(config.data_dir() + "/rigs");
   MakeAbsolute(folder, config.mutable_sequences_dir());
   MakeAbsolute(folder, config.mutable_rigs_dir());
+  for (std::string& root : *config.mutable_picture_root()) MakeAbsolute(folder, &root);
   if (config.has_tls_certificate()) {
     MakeAbsolute(folder, config.mutable_tls_certificate());
     MakeAbsolute(folder, config.mutable_tls_key());

@@ -21,7 +21,8 @@ class Camera final : public Block {
       {.live = false,
        .doc = "Address of the camera: gev:SERIAL or gev-ip:ADDRESS for GigE Vision, "
               "sim:SCENE#left for the simulation, file:FOLDER?pattern=*.png for recorded "
-              "pictures, camera:NAME for a camera of the server's configuration. Features may "
+              "pictures (FOLDER as in FileSource), camera:NAME for a camera of the server's "
+              "configuration. Features may "
               "follow, as in gev:21000001?ExposureTimeAbs=5000."}};
 
   Camera() {

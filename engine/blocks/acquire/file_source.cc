@@ -19,8 +19,8 @@ class FileSource final : public Block {
       this,
       "folder",
       {.live = false,
-       .doc = "Folder with the pictures on the server; a relative path starts in the server's "
-              "data folder."}};
+       .doc = "Folder with the pictures: below the server's data folder, or an absolute path "
+              "below a folder that the server's configuration names as picture_root."}};
   Param<std::string> left{
       this,
       "left",
@@ -111,7 +111,7 @@ class FileSource final : public Block {
   Status Start() override {
     if (folder->empty()) return InvalidArgument("set folder to the folder with the pictures");
     FilePairOptions options;
-    options.folder = environment().data_dir / *folder;
+    VS_ASSIGN_OR_RETURN(options.folder, PicturePath(environment().folders, *folder));
     options.left_pattern = *left;
     options.right_pattern = *right;
     options.truth_pattern = *truth;

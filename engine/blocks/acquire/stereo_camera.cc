@@ -24,8 +24,9 @@ class StereoCamera final : public Block {
       "left",
       {.live = false,
        .doc = "Address of the left camera: gev:SERIAL or gev-ip:ADDRESS for GigE Vision, "
-              "sim:SCENE#left for the simulation, file:FOLDER for recorded pictures, camera:NAME "
-              "for a camera of the server's configuration. Features may follow, as in "
+              "sim:SCENE#left for the simulation, file:FOLDER for recorded pictures (FOLDER as in "
+              "FileSource), camera:NAME for a camera of the server's configuration. Features may "
+              "follow, as in "
               "gev:21000001?ExposureTimeAbs=5000&TriggerMode=On."}};
   Param<std::string> right{
       this,

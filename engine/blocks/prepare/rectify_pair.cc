@@ -1,4 +1,5 @@
 // Undoes lens distortion and misalignment of a pair of cameras by their calibration.
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,8 +28,8 @@ class RectifyPair final : public Block {
       this,
       "rig_file",
       {.live = false,
-       .doc = "Path of a calibration file on the server, used when no stored calibration is named; "
-              "a relative path starts in the server's data folder."}};
+       .doc = "Calibration file below the server's data folder, used when no stored calibration "
+              "is named."}};
   Param<double> alpha{
       this,
       "alpha",
@@ -71,7 +72,9 @@ class RectifyPair final : public Block {
       return FailedPrecondition(
           "no calibration is chosen; set rig to the name of a stored one, or rig_file to a file");
     }
-    VS_ASSIGN_OR_RETURN(StereoRig loaded, LoadRig(environment().data_dir / *rig_file));
+    VS_ASSIGN_OR_RETURN(const std::filesystem::path file,
+                        DataPath(environment().folders, *rig_file));
+    VS_ASSIGN_OR_RETURN(StereoRig loaded, LoadRig(file));
     return std::make_shared<const StereoRig>(std::move(loaded));
   }
 

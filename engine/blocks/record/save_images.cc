@@ -28,7 +28,7 @@ std::string FileTime(int64_t utc_ns) {
   return text;
 }
 
-// Relative, of names that are neither hidden nor special.
+// Relative, of names that are neither hidden nor special, as befits names that we make.
 Status CheckFolder(const std::string& text) {
   const std::filesystem::path path(text);
   const bool plain = std::all_of(path.begin(), path.end(), [](const std::filesystem::path& part) {
@@ -129,12 +129,11 @@ class SaveImages final : public Block {
                                        "error of this block, or delete the oldest pictures."}};
 
   Status Start() override {
-    if (environment().data_dir.empty()) {
-      return FailedPrecondition("pictures need a data folder: run this sequence on a server");
-    }
     if (!CanSave(picture.source_type())) return WrongType(picture.source_type());
     VS_RETURN_IF_ERROR(CheckPolicy());
-    VS_ASSIGN_OR_RETURN(folder_, PictureFolder::Open(environment().data_dir / *folder));
+    VS_ASSIGN_OR_RETURN(const std::filesystem::path place,
+                        DataPath(environment().folders, *folder));
+    VS_ASSIGN_OR_RETURN(folder_, PictureFolder::Open(place));
     files_ = 0;
     runs_ = 0;
     return Status();

@@ -60,6 +60,23 @@ TEST_F(CameraBlock, SaysWhatIsWrongWithItsAddress) {
   EXPECT_EQ(block_.Start().code(), StatusCode::kFailedPrecondition);
 }
 
+TEST_F(CameraBlock, ReadsNoPicturesOutsideTheAllowedFolders) {
+  WriteGrey(folder_ / "secret/1.pgm", 10);
+  WriteGrey(folder_ / "data/run7/1.pgm", 20);
+  CameraHub hub({.data_dir = folder_ / "data", .picture_roots = {}});
+  block_.environment.cameras = &hub;
+  for (const std::string& outside : {std::string("../secret"), (folder_ / "secret").string()}) {
+    ASSERT_TRUE(block_.Set("address", "file:" + outside).ok());
+    EXPECT_EQ(block_.Start().code(), StatusCode::kInvalidArgument) << outside;
+  }
+  ASSERT_TRUE(block_.Set("address", std::string("file:run7")).ok());
+  ASSERT_TRUE(block_.Start().ok());
+  ASSERT_TRUE(WaitUntil([&] { return block_.block().Ready(); }));
+  ASSERT_TRUE(block_.Run().ok());
+  EXPECT_EQ(block_.Output<GreyImage>("image")->Row(0)[0], 20);
+  block_.block().Stop();
+}
+
 TEST_F(CameraBlock, StopEndsAReaderThatWaits) {
   for (int i = 0; i < 20; ++i) WriteGrey(folder_ / (std::to_string(i) + ".pgm"), 1);
   ASSERT_TRUE(block_.Set("address", "file:" + folder_.path().string()).ok());

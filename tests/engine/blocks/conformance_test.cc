@@ -77,7 +77,7 @@ class EveryBlock : public ::testing::TestWithParam<std::string> {
   void Equip(BlockHarness* harness) {
     harness->environment.topics = &topics_;
     harness->environment.results = &sink_;
-    harness->environment.data_dir = folder_.path();
+    harness->environment.folders.data_dir = folder_.path();
   }
 
   test::TempFolder folder_;

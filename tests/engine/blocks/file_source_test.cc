@@ -47,7 +47,7 @@ TEST_F(FileSourceBlock, PlaysPairsWithTheirTruth) {
 TEST_F(FileSourceBlock, TellsTheGeometryOfRectifiedPictures) {
   WriteGrey(folder_ / "left.png", 1);
   WriteGrey(folder_ / "right.png", 2);
-  block_.environment.data_dir = folder_.path().parent_path();
+  block_.environment.folders.data_dir = folder_.path().parent_path();
   ASSERT_TRUE(block_.Set("folder", folder_.path().filename().string()).ok());
   ASSERT_TRUE(block_.Set("rectified", true).ok());
   ASSERT_TRUE(block_.Set("focal_px", 999.421).ok());
@@ -61,6 +61,27 @@ TEST_F(FileSourceBlock, TellsTheGeometryOfRectifiedPictures) {
                                                .focal_px = 999.421,
                                                .baseline_m = 0.193001,
                                                .principal_offset_px = 32.778}));
+}
+
+TEST_F(FileSourceBlock, ReadsNoPicturesOutsideTheAllowedFolders) {
+  WriteGrey(folder_ / "secret/left.png", 1);
+  WriteGrey(folder_ / "secret/right.png", 2);
+  WriteGrey(folder_ / "data/left.png", 3);
+  block_.environment.folders = {.data_dir = folder_ / "data", .picture_roots = {}};
+  for (const std::string& outside : {std::string("../secret"), (folder_ / "secret").string()}) {
+    ASSERT_TRUE(block_.Set("folder", outside).ok());
+    EXPECT_EQ(block_.Start().code(), StatusCode::kInvalidArgument) << outside;
+  }
+  ASSERT_TRUE(block_.Set("folder", std::string(".")).ok());
+  ASSERT_TRUE(block_.Set("left", std::string("left.png")).ok());
+  ASSERT_TRUE(block_.Set("right", std::string("../secret/right.png")).ok());
+  EXPECT_EQ(block_.Start().code(), StatusCode::kInvalidArgument) << "nor by their names";
+
+  block_.environment.folders.picture_roots = {folder_ / "secret"};
+  ASSERT_TRUE(block_.Set("folder", (folder_ / "secret").string()).ok());
+  ASSERT_TRUE(block_.Set("right", std::string("right.png")).ok());
+  ASSERT_TRUE(block_.Start().ok());
+  EXPECT_EQ(Next()->left->image.Row(0)[0], 1);
 }
 
 TEST_F(FileSourceBlock, SaysWhatIsWrongWithTheFolder) {

@@ -26,7 +26,7 @@ class StoppedClock final : public Clock {
 class SaveImages : public ::testing::Test {
  protected:
   SaveImages() {
-    block_.environment.data_dir = root_.path();
+    block_.environment.folders.data_dir = root_.path();
     block_.environment.clock = &clock_;
     EXPECT_TRUE(block_.Set("min_free_mb", int64_t{0}).ok());
   }
@@ -159,6 +159,8 @@ TEST_F(SaveImages, StaysInsideTheDataFolder) {
   }
   ASSERT_TRUE(block_.Set("folder", std::string("line_1/camera-2/v1.0")).ok());
   EXPECT_TRUE(block_.Start().ok());
+  block_.environment.folders.data_dir.clear();
+  EXPECT_EQ(block_.Start().code(), StatusCode::kFailedPrecondition);
 }
 
 TEST_F(SaveImages, NeedsAPictureAndForThePolicyFailAVerdict) {

@@ -160,7 +160,7 @@ TEST_F(StereoBlocks, ColoursAskForASensibleRange) {
 class RectifyBlock : public StereoBlocks {
  protected:
   void SetUp() override {
-    block_.environment.data_dir = folder_.path();
+    block_.environment.folders.data_dir = folder_.path();
     ASSERT_TRUE(SaveRig(sim::DemoRig(), folder_ / "demo.json").ok());
     block_.Input("pair", RawPair());
   }
@@ -191,6 +191,15 @@ TEST_F(RectifyBlock, TakesTheRigFromTheStoreOrAFile) {
   ASSERT_TRUE(block_.Start().ok());
   ASSERT_TRUE(block_.Run().ok());
   EXPECT_EQ(block_.Output<StereoFrame>("rectified")->geometry, from_store);
+}
+
+TEST_F(RectifyBlock, ReadsCalibrationsBelowTheDataFolderOnly) {
+  block_.environment.folders.data_dir = folder_ / "data";
+  for (const std::string& outside :
+       {std::string("../demo.json"), (folder_ / "demo.json").string()}) {
+    ASSERT_TRUE(block_.Set("rig_file", outside).ok());
+    EXPECT_THAT(block_.Start().ToString(), HasSubstr("leads out of the server's data folder"));
+  }
 }
 
 TEST_F(RectifyBlock, SaysWhichCalibrationIsMissing) {

@@ -54,6 +54,13 @@ TEST_F(StereoCameraBlock, GivesThePairWithItsTimesAndSkew) {
   EXPECT_EQ(block_.frame.capture_ns, 3 * kPeriodNs);
 }
 
+TEST_F(StereoCameraBlock, ReadsNoPicturesOutsideTheAllowedFolders) {
+  CameraHub hub({.data_dir = "/var/lib/vs", .picture_roots = {"/srv/pictures"}});
+  block_.environment.cameras = &hub;
+  ASSERT_TRUE(block_.Set("right", std::string("file:/etc")).ok());
+  EXPECT_THAT(block_.Start().ToString(), HasSubstr("right: \"/etc\" is outside the folders"));
+}
+
 TEST_F(StereoCameraBlock, KeepsTheNewestPairAndCountsTheOthers) {
   ASSERT_TRUE(block_.Start().ok());
   for (uint64_t i = 1; i <= 5; ++i) Deliver(i);

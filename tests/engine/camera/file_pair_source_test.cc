@@ -144,6 +144,27 @@ TEST(FilePairSource, LeavesBadPairsOutAndNamesThem) {
   EXPECT_THAT(source->Stats().right.last_error, HasSubstr("9 x 6 pixels but its partner 8 x 6"));
 }
 
+TEST(FilePairSource, PatternsDoNotLeadOutOfTheFolder) {
+  TempFolder folder;
+  for (const char* name : {"in/1_left.png", "in/1_right.png", "out/1_right.png"}) {
+    WriteGrey(folder / name, 1);
+  }
+  FilePairOptions options{.folder = folder / "in", .left_pattern = "*_left.png"};
+  for (const std::string& outside :
+       {std::string("../out/*_right.png"), (folder / "out/*_right.png").string()}) {
+    options.right_pattern = outside;
+    options.truth_pattern.clear();
+    options.visible_pattern.clear();
+    EXPECT_EQ(StartError(options).code(), StatusCode::kInvalidArgument) << outside;
+    options.right_pattern = "*_right.png";
+    options.truth_pattern = outside;
+    EXPECT_EQ(StartError(options).code(), StatusCode::kInvalidArgument) << outside;
+    options.truth_pattern.clear();
+    options.visible_pattern = outside;
+    EXPECT_EQ(StartError(options).code(), StatusCode::kInvalidArgument) << outside;
+  }
+}
+
 TEST(FilePairSource, SaysWhyItCannotStart) {
   TempFolder folder;
   EXPECT_THAT(StartError({.folder = folder / "nowhere"}).message(),

@@ -109,6 +109,11 @@ TEST(Config, ChecksCameras) {
                           HasSubstr("server.conf:7: a feature of camera \"fourth\"")));
 }
 
+TEST(Config, RefusesAnEmptyPictureRoot) {
+  EXPECT_THAT(FaultsOf(std::string(kMinimal) + "picture_root: \"/a\"\npicture_root: \"\"\n"),
+              ElementsAre(HasSubstr("server.conf:4: picture_root is empty")));
+}
+
 TEST(Config, RefusesGarbageWithALine) {
   std::mt19937 random(3);
   for (int i = 0; i < 300; ++i) {
@@ -143,13 +148,17 @@ TEST(Config, SaysWhyAFileCannotBeRead) {
 TEST(Config, CountsRelativePathsFromTheFile) {
   const test::TempFolder folder;
   std::ofstream(folder / "server.conf")
-      << kMinimal << "tls_certificate: \"c.pem\" tls_key: \"../k.pem\" rigs_dir: \"/srv/rigs\"";
+      << kMinimal << "tls_certificate: \"c.pem\" tls_key: \"../k.pem\" rigs_dir: \"/srv/rigs\" "
+      << "picture_root: \"../pictures\" picture_root: \"/srv/parts\"";
   const Result<config::ServerConfig> config = LoadConfig(folder / "server.conf");
   ASSERT_TRUE(config.has_value()) << config.error().ToString();
   EXPECT_EQ(config->data_dir(), folder / "data");
   EXPECT_EQ(config->tls_certificate(), folder / "c.pem");
   EXPECT_EQ(config->tls_key(), folder.path().parent_path() / "k.pem");
   EXPECT_EQ(config->rigs_dir(), "/srv/rigs");
+  ASSERT_EQ(config->picture_root_size(), 2);
+  EXPECT_EQ(config->picture_root(0), folder.path().parent_path() / "pictures");
+  EXPECT_EQ(config->picture_root(1), "/srv/parts");
 }
 
 TEST(Config, DescriptionIsAConfigurationWithNothingLeftOpen) {
