@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -92,6 +94,15 @@ class SequenceApi : public VisionTest {
   }
 };
 
+// What goes wrong with one sequence, told to its user and not noticed by another.
+class SequenceFault : public SequenceApi {
+ protected:
+  void SetUp() override { bystander_ = StartBystander(); }
+  void TearDown() override { EXPECT_TRUE(bystander_->GoesOn()); }
+
+  std::unique_ptr<SteadyClient> bystander_;
+};
+
 TEST_F(SequenceApi, AStoredSequenceComesBackAsItWasSent) {
   const SequenceSpec spec = CountSpec();
   const pb::Sequence created = Create(spec);
@@ -106,7 +117,7 @@ TEST_F(SequenceApi, AStoredSequenceComesBackAsItWasSent) {
   EXPECT_EQ(pb::SEQUENCE_RUN_STATE_STOPPED, got.run_state());
 }
 
-TEST_F(SequenceApi, WrongSequencesAreRefusedWithAllFaultsAndNothingIsStored) {
+TEST_F(SequenceFault, WrongSequencesAreRefusedWithAllFaultsAndNothingIsStored) {
   SequenceSpec spec = CountSpec();
   spec.blocks.push_back({"odd", "NoSuchBlock", {}});
   spec.blocks[1].params["offset"] = int64_t{5000};
@@ -125,10 +136,10 @@ TEST_F(SequenceApi, WrongSequencesAreRefusedWithAllFaultsAndNothingIsStored) {
   EXPECT_EQ(grpc::StatusCode::INVALID_ARGUMENT, cyclic.error_code());
   EXPECT_THAT(cyclic.error_message(), HasSubstr("the sequence has a fault"));
   EXPECT_THAT(cyclic.error_message(), HasSubstr("a -> b -> a"));
-  EXPECT_EQ(0, Stored());
+  EXPECT_EQ(1, Stored());  // the bystander's
 }
 
-TEST_F(SequenceApi, AnUnfinishedSequenceIsStoredWhenAskedForButDoesNotStart) {
+TEST_F(SequenceFault, AnUnfinishedSequenceIsStoredWhenAskedForButDoesNotStart) {
   SequenceSpec spec = CountSpec();
   spec.blocks[1].type = "NoSuchBlock";
   Create(spec, true);
@@ -144,7 +155,7 @@ TEST_F(SequenceApi, AnUnfinishedSequenceIsStoredWhenAskedForButDoesNotStart) {
   EXPECT_GT(response.faults_size(), 0);
 }
 
-TEST_F(SequenceApi, AMissingCalibrationIsNamedWithItsBlock) {
+TEST_F(SequenceFault, AMissingCalibrationIsNamedWithItsBlock) {
   SequenceSpec spec;
   spec.id = "rectify";
   spec.blocks = {{"source", "SimulatedStereo", {}},
@@ -152,6 +163,7 @@ TEST_F(SequenceApi, AMissingCalibrationIsNamedWithItsBlock) {
   spec.connections = {Wire("source.pair", "rectify.pair")};
   Create(spec);
   const grpc::Status started = Start("rectify");
+  EXPECT_EQ(grpc::StatusCode::NOT_FOUND, started.error_code());
   EXPECT_THAT(started.error_message(), HasSubstr("rectify"));
   EXPECT_THAT(started.error_message(), HasSubstr("cell_9"));
   const pb::SequenceState state = State("rectify");
@@ -159,20 +171,26 @@ TEST_F(SequenceApi, AMissingCalibrationIsNamedWithItsBlock) {
   EXPECT_EQ("rectify/rectify", state.last_error().path());
 }
 
-TEST_F(SequenceApi, AFolderOfUnreadablePicturesIsTold) {
+TEST_F(SequenceFault, AFolderOfUnreadablePicturesIsTold) {
+  const std::filesystem::path folder = server_.data_dir() / "pictures";
+  std::filesystem::create_directory(folder);
   for (const char* name : {"a_left.png", "a_right.png"}) {
-    std::ofstream(server_.data_dir() / name) << "this is no picture";
+    std::ofstream(folder / name) << "this is no picture";
   }
   SequenceSpec spec;
   spec.id = "files";
-  spec.blocks = {{"source", "FileSource", {{"folder", std::string(".")}}},
+  spec.blocks = {{"source", "FileSource", {{"folder", std::string("pictures")}}},
                  {"publish", "Publish", {}}};
   spec.connections = {Wire("source.pair", "publish.value")};
   Create(spec);
   const grpc::Status started = Start("files");
   EXPECT_EQ(grpc::StatusCode::INVALID_ARGUMENT, started.error_code());
-  EXPECT_THAT(started.error_message(), HasSubstr("is not a readable picture"));
-  EXPECT_EQ("files/source", State("files").last_error().path());
+  EXPECT_THAT(started.error_message(), HasSubstr("source: "));
+  EXPECT_THAT(started.error_message(), HasSubstr("data/pictures can be used"));
+  EXPECT_THAT(started.error_message(), HasSubstr("data/pictures/a_left.png is not"));
+  const pb::SequenceState state = State("files");
+  EXPECT_EQ(pb::SEQUENCE_RUN_STATE_STOPPED, state.state());
+  EXPECT_EQ("files/source", state.last_error().path());
 }
 
 TEST_F(SequenceApi, OfTwoEditorsTheLaterOneIsTurnedAway) {
@@ -372,7 +390,7 @@ TEST_F(SequenceApi, WhatASequenceLogsIsWatchedListedQueriedAndExported) {
   EXPECT_THAT(csv, HasSubstr(result.result_id()));
 }
 
-TEST_F(SequenceApi, AFailingSequenceIsUnhealthyAndRaisesAnAlarm) {
+TEST_F(SequenceFault, AFailingSequenceIsUnhealthyAndRaisesAnAlarm) {
   ProbeOf("step").run = [](const StepRun&) { return Unavailable("the lamp is dark"); };
   Create(CountSpec());
   const std::string name = "sequences/count";
@@ -386,11 +404,21 @@ TEST_F(SequenceApi, AFailingSequenceIsUnhealthyAndRaisesAnAlarm) {
   };
   EXPECT_TRUE(WaitUntil(alarmed));
   EXPECT_EQ(false, server_->health().Get(name));
+  EXPECT_TRUE(bystander_->GoesOn());
   ASSERT_TRUE(Stop("count").ok());
   ProbeOf("step").run = nullptr;
   ASSERT_TRUE(Start("count").ok());
   EXPECT_TRUE(WaitUntil([&] { return server_->health().Get(name) == true; }));
   EXPECT_TRUE(WaitUntil([&] { return !alarmed(); }));
+}
+
+TEST_F(SequenceFault, AnExceptionEndsItsOwnSequenceOnly) {
+  ProbeOf("step").run = [](const StepRun&) -> Status { throw std::runtime_error("bad luck"); };
+  Create(CountSpec());
+  ASSERT_TRUE(Start("count").ok());
+  ASSERT_TRUE(WaitUntil([&] { return State("count").state() == pb::SEQUENCE_RUN_STATE_FAULT; }));
+  EXPECT_EQ("count/step", State("count").last_error().path());
+  EXPECT_THAT(State("count").last_error().message(), HasSubstr("bad luck"));
 }
 
 TEST_F(SequenceApi, AfterARestartEverythingIsThereAgain) {

@@ -3,10 +3,12 @@
 #include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "visionserver/v1/parameter.grpc.pb.h"
@@ -20,6 +22,8 @@
 #include "tests/support/test_server.h"
 
 namespace vs::test {
+
+class SteadyClient;
 
 // A whole server with a real client's stubs: everything goes over the network interface.
 class VisionTest : public ::testing::Test {
@@ -35,6 +39,8 @@ class VisionTest : public ::testing::Test {
   grpc::Status Set(const std::string& token, const std::string& sequence, const std::string& path,
                    const visionserver::v1::Value& value,
                    visionserver::v1::SetParametersResponse* response);
+  // Stores and starts the sequence "bystander", which nobody disturbs, and reads its pictures.
+  std::unique_ptr<SteadyClient> StartBystander();
 
   TestServer server_;
   const std::shared_ptr<grpc::Channel> channel_ = server_.Connect();
@@ -62,6 +68,8 @@ class StreamClient {
   void Ack(const visionserver::v1::StreamItem& item);
   // Reads and acknowledges.
   bool Take(visionserver::v1::StreamItem* item);
+  // Ends the stream, also while another thread reads and acknowledges.
+  void Cancel();
   grpc::Status Finish();
   const std::vector<std::string>& notices() const { return notices_; }
   const std::string& stream_id() const { return stream_id_; }
@@ -73,8 +81,32 @@ class StreamClient {
   std::unique_ptr<grpc::ClientReader<visionserver::v1::StreamItem>> reader_;
   std::string stream_id_;
   std::vector<std::string> notices_;
+  std::atomic<bool> cancelled_ = false;
 };
 
 visionserver::v1::Subscription Wish(uint32_t id, const std::string& stream, uint32_t window = 2);
+
+// A client that reads all the while, to show that what goes wrong elsewhere costs it nothing.
+class SteadyClient {
+ public:
+  // Waits for the first picture of `stream`.
+  SteadyClient(std::shared_ptr<grpc::Channel> channel, const std::string& token,
+               const std::string& stream);
+  ~SteadyClient();
+  SteadyClient(const SteadyClient&) = delete;
+  SteadyClient& operator=(const SteadyClient&) = delete;
+
+  // Waits for a picture that is taken after this call. False when none comes, or when the stream
+  // or its sequence was ever interrupted.
+  bool GoesOn();
+
+ private:
+  void Read();
+
+  StreamClient client_;
+  std::atomic<int64_t> newest_capture_ns_ = 0;
+  std::atomic<bool> interrupted_ = false;
+  std::jthread reader_;  // last: everything it uses exists before it starts
+};
 
 }  // namespace vs::test
