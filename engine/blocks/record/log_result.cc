@@ -28,7 +28,10 @@ class LogResult final : public Block {
                                Need::kSome};
   In<std::string> part_id{this, "part_id", "The part that was measured.", Need::kOptional};
   In<std::string> meas_id{this, "meas_id", "A free name of the measurement.", Need::kOptional};
-  Out<std::string> result_id{this, "result_id", "The id under which the result was stored."};
+  Out<std::string> result_id{
+      this, "result_id",
+      "The id of the result, which is stored a moment later. Whoever must be sure that it is kept "
+      "waits until it is found under this id."};
   Param<std::string> name_a{this, "name_a", Name("a")};
   Param<std::string> name_b{this, "name_b", Name("b")};
   Param<std::string> name_c{this, "name_c", Name("c")};
