@@ -6,6 +6,8 @@
 #include <sys/mount.h>
 
 #include <atomic>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <set>
 #include <string>
@@ -177,7 +179,8 @@ TEST_F(ResultStoreTest, AFullDiskQueuesAndWritingGoesOnWhenThereIsRoom) {
   if (unshare(CLONE_NEWNS) != 0 ||
       mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
       mount("tmpfs", folder_.path().c_str(), "tmpfs", 0, "size=2m") != 0) {
-    GTEST_SKIP() << "needs the right to mount a small file system";
+    GTEST_SKIP() << "cannot mount a small file system of its own (" << std::strerror(errno)
+                 << "); run this test as root";
   }
   {
     auto store = Open({.min_free_bytes = 0});
