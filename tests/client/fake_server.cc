@@ -33,6 +33,7 @@ void FakeStreams::Cut(const grpc::Status& status, bool stay) {
   const std::lock_guard lock(mutex_);
   ++cuts_;
   cut_status_ = status;
+  open_stream_.clear();
   if (stay) refusal_ = status;
   changed_.notify_all();
 }
@@ -75,7 +76,8 @@ grpc::Status FakeStreams::Subscribe(grpc::ServerContext* context,
   uint64_t newest_sent = 0;
   std::vector<uint64_t> under_way;
   v1::StreamItem first;
-  first.set_stream_id("stream-" + std::to_string(opened_));
+  open_stream_ = "stream-" + std::to_string(opened_);
+  first.set_stream_id(open_stream_);
   writer->Write(first);
   if (!notice_.empty()) {
     v1::StreamItem notice;
@@ -107,7 +109,7 @@ grpc::Status FakeStreams::Subscribe(grpc::ServerContext* context,
 grpc::Status FakeStreams::Ack(grpc::ServerContext* /*context*/, const v1::AckRequest* request,
                               v1::AckResponse* /*response*/) {
   const std::lock_guard lock(mutex_);
-  if (request->stream_id() != "stream-" + std::to_string(opened_)) {
+  if (request->stream_id() != open_stream_) {
     return {grpc::NOT_FOUND, "no such stream"};
   }
   for (const v1::Acknowledgement& item : request->items()) {

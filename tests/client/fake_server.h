@@ -52,6 +52,7 @@ class FakeStreams final : public v1::StreamService::Service {
   grpc::Status cut_status_;
   int cuts_ = 0;
   int opened_ = 0;
+  std::string open_stream_;    // id; empty when there is none
   uint64_t sent_ = 0;          // items, of all streams
   uint64_t acknowledged_ = 0;  // newest of the stream that is open
   uint32_t subscribed_window_ = 0;

@@ -16,9 +16,12 @@ import array
 import hashlib
 import importlib
 import ipaddress
+import logging
+import random
 import socket
 import ssl
 import sys
+import time
 
 import grpc
 from google.protobuf import symbol_database
@@ -39,6 +42,19 @@ _OPTIONS = [
     ("grpc.max_reconnect_backoff_ms", 5_000),
     ("grpc.enable_http_proxy", 0),
 ]
+_LOG = logging.getLogger("visionserver")
+# After these the same request may succeed later, without anybody doing anything about it.
+_PASSING = frozenset({
+    grpc.StatusCode.UNAVAILABLE,
+    grpc.StatusCode.CANCELLED,  # the server's word to a client that does not read
+    grpc.StatusCode.ABORTED,
+    grpc.StatusCode.INTERNAL,
+    grpc.StatusCode.UNKNOWN,
+    grpc.StatusCode.RESOURCE_EXHAUSTED,
+    grpc.StatusCode.DEADLINE_EXCEEDED,
+})
+_FIRST_PAUSE_S = 0.2
+_LONGEST_PAUSE_S = 5
 
 
 class CertificateError(Exception):
@@ -117,22 +133,54 @@ class Client:
         The server sends the next image when the previous one was dealt with, so a slow loop skips
         images rather than fall behind. CODEC_RAW suits a local network; CODEC_RVL is a fifth of
         the size but slow to unpack in Python.
+
+        A stream that once stood is opened again when it is lost: the server was restarted, or the
+        loop took longer over one image than the server waits (30 s). An error that waiting does not
+        mend, such as UNAUTHENTICATED, is raised, and so is any failure to open the first time.
         """
         subscription = stream_pb2.Subscription(id=1, stream=stream, codec=codec, window=window,
                                                max_fps=max_fps)
+        stood = False
+        attempts = 0
+        while True:
+            ending = "the server ended it"
+            try:
+                for frame in self._subscribed(subscription):
+                    stood = True
+                    attempts = 0
+                    if frame is not None:
+                        yield frame
+            except grpc.RpcError as error:
+                if not stood or error.code() not in _PASSING:
+                    raise
+                ending = error.details()
+            _LOG.warning("stream %s: %s; trying again", stream, ending)
+            longest_s = min(_LONGEST_PAUSE_S, _FIRST_PAUSE_S * 2 ** min(attempts, 8))
+            time.sleep(random.uniform(longest_s / 2, longest_s))
+            attempts += 1
+
+    def _subscribed(self, subscription):
+        """The images of one Subscribe to its end, with None for what else it says."""
         items = self.watch("StreamService", "Subscribe", subscriptions=[subscription])
         stream_id = None
         try:
             for item in items:
                 if item.stream_id:
                     stream_id = item.stream_id
-                if item.subscription_id != 1 or item.notice:
+                if item.subscription_id != subscription.id or item.notice:
+                    yield None
                     continue
                 yield DepthFrame(item)
-                acknowledged = stream_pb2.Acknowledgement(subscription_id=1, seq=item.seq)
-                self.call("StreamService", "Ack", stream_id=stream_id, items=[acknowledged])
+                self._acknowledge(stream_id, subscription.id, item.seq)
         finally:
             items.cancel()
+
+    def _acknowledge(self, stream_id, subscription_id, seq):
+        item = stream_pb2.Acknowledgement(subscription_id=subscription_id, seq=seq)
+        try:
+            self.call("StreamService", "Ack", stream_id=stream_id, items=[item])
+        except grpc.RpcError:
+            pass  # the stream itself tells what is wrong
 
     def _metadata(self):
         return [("authorization", f"Bearer {self._token}")] if self._token else []

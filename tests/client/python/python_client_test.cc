@@ -2,13 +2,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <memory>
+
 #include "visionserver/v1/sequence.grpc.pb.h"
 
 #include "client/call.h"
 #include "client/cli/sequence_text.h"
 #include "client/client.h"
+#include "tests/client/fake_server.h"
 #include "tests/client/simulated_sequence.h"
 #include "tests/support/child_process.h"
+#include "tests/support/temp_folder.h"
 #include "tests/support/test_server.h"
 
 namespace vs::test {
@@ -68,6 +73,51 @@ TEST_F(PythonClientTest, ReceivesDepthInEveryCodec) {
   const FinishedProcess done = Run(VS_PYTHON_TESTS "/depth_test.py");
   EXPECT_EQ(0, done.exit_code) << done.error_output;
   EXPECT_THAT(done.error_output, testing::HasSubstr("Ran 3 tests"));
+}
+
+// One image of 2 x 1 pixels.
+v1::StreamItem SmallItem() {
+  v1::StreamItem item;
+  item.mutable_header()->set_kind(v1::STREAM_KIND_DISPARITY);
+  item.mutable_header()->set_codec(v1::CODEC_RAW);
+  item.mutable_header()->set_width(2);
+  item.mutable_header()->set_height(1);
+  item.set_payload("\x10\x01\x20\x01");
+  return item;
+}
+
+TEST(PythonClient, GoesOnWhenItsStreamWasCutWhileItWorkedOnAnImage) {
+  const TempFolder folder;
+  const auto go_on = [&](int images) { std::ofstream(folder / std::to_string(images)); };
+  auto server = std::make_unique<FakeServer>();
+  server->streams().Publish(SmallItem());
+  const auto program =
+      ChildProcess::Start({VS_PYTHON, VS_PYTHON_TESTS "/reconnect_test.py"},
+                          {.environment = {{"PYTHONPATH", VS_PYTHON_PACKAGES},
+                                           {"PYTHONDONTWRITEBYTECODE", "1"},
+                                           {"TEST_ADDRESS", server->Address()},
+                                           {"TEST_FOLDER", folder.path().string()}}});
+  ASSERT_TRUE(program) << program.error().ToString();
+  ASSERT_TRUE((*program)->WaitForLine("image 1 is number 1")) << (*program)->ErrorOutput();
+  // As the real server does with a client that took too long.
+  server->streams().Cut({grpc::ABORTED, "no acknowledgement for 30 s"});
+  server->streams().Publish(SmallItem());
+  go_on(1);
+  ASSERT_TRUE((*program)->WaitForLine("image 2 is number 2")) << (*program)->ErrorOutput();
+
+  const int port = server->port();
+  server.reset();
+  server = std::make_unique<FakeServer>(nullptr, port);
+  server->streams().Publish(SmallItem());
+  go_on(2);
+  ASSERT_TRUE((*program)->WaitForLine("image 3 is number 1")) << (*program)->ErrorOutput();
+
+  server->streams().Cut({grpc::UNAUTHENTICATED, "log in first"}, /*stay=*/true);
+  go_on(3);
+  EXPECT_EQ(0, (*program)->WaitForExit()) << (*program)->ErrorOutput();
+  EXPECT_THAT((*program)->ErrorOutput(), testing::HasSubstr("Ran 2 tests"));
+  EXPECT_THAT((*program)->ErrorOutput(),
+              testing::HasSubstr("sequence/depth: no acknowledgement for 30 s; trying again"));
 }
 
 TEST_F(PythonClientTest, HasAnExampleThatRuns) {
