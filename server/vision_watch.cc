@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/base/str.h"
+#include "server/sequences/camera_use.h"
 
 namespace vs {
 namespace {
@@ -65,13 +66,9 @@ void VisionWatch::LookAtSequences() {
 
 void VisionWatch::LookAtCameras() {
   for (const CameraEntry& camera : vision_.cameras().Cameras()) {
-    const bool bad =
-        camera.stats.state == CameraState::kLost || camera.stats.state == CameraState::kStalled;
-    if (!bad || camera.used_by.empty()) continue;
-    Report("cameras/" + camera.id, Severity::kError,
-           Str("camera ", camera.id, ": ",
-               camera.stats.last_error.empty() ? CameraStateName(camera.stats.state)
-                                               : camera.stats.last_error));
+    const std::string trouble = TroubleOf(camera.stats);
+    if (trouble.empty() || camera.used_by.empty()) continue;
+    Report("cameras/" + camera.id, Severity::kError, Str("camera ", camera.id, ": ", trouble));
   }
 }
 

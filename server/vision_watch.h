@@ -16,9 +16,8 @@ namespace vs {
 
 // Looks after the vision half of a server twice a second: tells the health of each sequence
 // ("sequences/ID"), and raises an alarm when results cannot be written ("results"), a sequence
-// fails
-// ("sequences/ID") or a camera in use is gone ("cameras/ID"). An alarm stays for some seconds after
-// its reason has gone, so that what comes and goes is seen and fills no log.
+// fails ("sequences/ID") or a camera in use gives no pictures ("cameras/ID"). An alarm stays for
+// some seconds after its reason has gone, so that what comes and goes is seen and fills no log.
 class VisionWatch {
  public:
   // All must outlive it.

@@ -18,7 +18,7 @@ enum class Activity {
   kStopped,
   kStarting,
   kRunning,
-  kDegraded,  // runs, but a block fails
+  kDegraded,  // runs, but a block fails or a camera gives no pictures
   kStopping,
   kFault,  // ended by an exception in a block
 };

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/base/str.h"
+#include "server/sequences/camera_use.h"
 #include "server/services/periodic_source.h"
 
 namespace vs {
@@ -85,13 +86,8 @@ std::vector<CameraEntry> CameraService::Cameras() {
     const std::shared_ptr<Run> run = manager_.FindRun(status.id);
     if (run == nullptr) continue;
     std::set<CameraEntry*> used;
-    for (const ParamAssignment& one : run->Parameters()) {
-      const auto* text = std::get_if<std::string>(&one.value);
-      if (text == nullptr) continue;
-      const Result<CameraUri> uri = CameraUri::Parse(*text).and_then(
-          [this](const CameraUri& parsed) { return hub_.Resolve(parsed); });
-      if (!uri) continue;
-      if (const auto place = find(*uri); place != known.end()) used.insert(&place->entry);
+    for (const CameraUse& use : CamerasOf(*run, hub_)) {
+      if (const auto place = find(use.camera); place != known.end()) used.insert(&place->entry);
     }
     for (CameraEntry* entry : used) entry->used_by.push_back(status.id);
   }
