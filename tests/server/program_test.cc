@@ -6,10 +6,16 @@
 #include <signal.h>
 
 #include <fstream>
+#include <map>
+#include <random>
 #include <regex>
 
+#include "visionserver/v1/result.grpc.pb.h"
+
 #include "engine/base/str.h"
+#include "server/server.h"
 #include "tests/support/child_process.h"
+#include "tests/support/client_call.h"
 #include "tests/support/raw_call.h"
 #include "tests/support/raw_socket.h"
 #include "tests/support/temp_folder.h"
@@ -18,8 +24,10 @@
 namespace vs {
 namespace {
 
+namespace pb = visionserver::v1;
 using test::CallRaw;
 using test::ChildProcess;
+using test::ClientCall;
 using test::FinishedProcess;
 using test::RawSocket;
 using ::testing::HasSubstr;
@@ -50,6 +58,12 @@ class ProgramTest : public ::testing::Test {
       port_ = static_cast<uint16_t>(std::stoi(match[1]));
     }
     return server;
+  }
+  // Of a robot, for the server that is started next.
+  std::string MakeApiKey() {
+    const auto server = Server::Start({.config = *ParseConfig(kPlain, "test.conf", folder_.path()),
+                                       .password_cost = {.passes = 1, .memory_bytes = 8192}});
+    return (*server)->access().accounts().CreateApiKey({.name = "robot"})->secret;
   }
   std::shared_ptr<grpc::Channel> Connect() const {
     return grpc::CreateChannel(Str("ipv4:127.0.0.1:", port_), grpc::InsecureChannelCredentials());
@@ -144,6 +158,51 @@ TEST_F(ProgramTest, StartsAgainAfterBeingKilled) {
     const auto server = Start(Command());
     EXPECT_TRUE(CallRaw(Connect(), kInfo, "").status.ok());
     server->Kill();
+  }
+}
+
+// Logs a result for each pair of a simulated rig; starts by itself.
+constexpr const char* kLogging = R"({"autostart": true, "revision": 1, "sequence": {"id": "log",
+  "blocks": [
+    {"id": "cameras", "type": "StereoCamera", "params": {
+      "left": "sim:demo#left?Width=64&Height=48&AcquisitionFrameRateAbs=30",
+      "right": "sim:demo#right?Width=64&Height=48&AcquisitionFrameRateAbs=30"}},
+    {"id": "log", "type": "LogResult", "params": {"name_a": "skew_ms"}}],
+  "connections": [{"from": "cameras.skew_ms", "to": "log.a"}]}})";
+
+TEST_F(ProgramTest, KeepsEveryResultThatAClientSawWhenItIsKilled) {
+  Write(kPlain);
+  const std::string key = MakeApiKey();
+  std::ofstream(folder_ / "data" / "sequences" / "log.json") << kLogging;
+  std::mt19937 random(1);
+  std::map<uint64_t, std::string> seen;  // results as they came, by number
+  for (int round = 0; round < 5; ++round) {
+    const auto server = Start(Command());
+    const auto results = pb::ResultService::NewStub(Connect());
+    ClientCall call(key);
+    pb::WatchResultsRequest all;
+    all.set_after_number(0);
+    const auto watch = results->WatchResults(call.context(), all);
+    pb::Result result;
+    for (const auto& [number, bytes] : seen) {
+      ASSERT_TRUE(watch->Read(&result)) << watch->Finish().error_message();
+      ASSERT_EQ(number, result.number()) << "round " << round;
+      ASSERT_EQ(bytes, result.SerializeAsString()) << "round " << round;
+    }
+    // The sequence runs again once there is another first frame; then the blow may fall any time.
+    const auto take = [&] {
+      const bool came = watch->Read(&result);
+      if (came) seen[result.number()] = result.SerializeAsString();
+      return came;
+    };
+    do {
+      ASSERT_TRUE(take()) << watch->Finish().error_message() << server->ErrorOutput();
+    } while (result.frame_number() != 1);
+    for (auto more = random() % 40; more > 0; --more) ASSERT_TRUE(take());
+    server->Kill();
+    while (take()) {
+    }
+    EXPECT_EQ(seen.size(), seen.rbegin()->first) << "numbers are without gaps";
   }
 }
 
