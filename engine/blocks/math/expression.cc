@@ -1,11 +1,10 @@
 // Computes a number from others by a formula.
-#include "engine/core/expression.h"
-
 #include <array>
 #include <optional>
 
 #include "engine/base/str.h"
 #include "engine/core/block.h"
+#include "engine/core/formula.h"
 
 namespace vs {
 namespace {
@@ -16,11 +15,11 @@ const std::vector<std::string>& InputNames() {
 }
 
 Status CheckFormula(const std::string& formula) {
-  const auto parsed = Expression::Parse(formula, InputNames());
+  const auto parsed = Formula::Parse(formula, InputNames());
   return parsed ? Status() : parsed.error();
 }
 
-class ExpressionBlock final : public Block {
+class Expression final : public Block {
  public:
   In<double> a{this, "a", "The number a of the formula.", Need::kSome};
   In<double> b{this, "b", "The number b of the formula.", Need::kSome};
@@ -50,11 +49,11 @@ class ExpressionBlock final : public Block {
     for (size_t i = 0; i < inputs.size(); ++i) {
       if (inputs[i]->has_value()) {
         values[i] = **inputs[i];
-      } else if (expression_->Uses(static_cast<int>(i))) {
+      } else if (parsed_->Uses(static_cast<int>(i))) {
         return FailedPrecondition(Str("there is no value of ", InputNames()[i], " in this frame"));
       }
     }
-    const double number = expression_->Evaluate(values.data());
+    const double number = parsed_->Evaluate(values.data());
     result.Set(number);
     is_true.Set(number != 0 && number == number);
     return Status();
@@ -65,10 +64,10 @@ class ExpressionBlock final : public Block {
 
   Status Prepare() {
     prepared_.clear();
-    VS_ASSIGN_OR_RETURN(expression_, Expression::Parse(*formula, InputNames()));
+    VS_ASSIGN_OR_RETURN(parsed_, Formula::Parse(*formula, InputNames()));
     const auto inputs = Inputs();
     for (size_t i = 0; i < inputs.size(); ++i) {
-      if (!inputs[i]->connected() && expression_->Uses(static_cast<int>(i))) {
+      if (!inputs[i]->connected() && parsed_->Uses(static_cast<int>(i))) {
         return FailedPrecondition(
             Str("the formula uses ", InputNames()[i], ": connect this input"));
       }
@@ -77,11 +76,11 @@ class ExpressionBlock final : public Block {
     return Status();
   }
 
-  std::optional<Expression> expression_;
-  std::string prepared_;  // the formula that expression_ stands for; empty = none
+  std::optional<Formula> parsed_;
+  std::string prepared_;  // the formula that parsed_ stands for; empty = none
 };
 
-VS_REGISTER_BLOCK(ExpressionBlock,
+VS_REGISTER_BLOCK(Expression,
                   {.category = "Math", .doc = "Computes a number from others by a formula."});
 
 }  // namespace

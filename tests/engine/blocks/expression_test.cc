@@ -9,18 +9,18 @@ namespace {
 
 using test::BlockHarness;
 
-class ExpressionBlock : public ::testing::Test {
+class Expression : public ::testing::Test {
  protected:
-  ExpressionBlock() {
+  Expression() {
     block_.Input("a", 3.0);
     block_.Input("c", 4.0);
   }
   Status Set(const std::string& formula) { return block_.Set("formula", formula); }
 
-  BlockHarness block_{"ExpressionBlock"};
+  BlockHarness block_{"Expression"};
 };
 
-TEST_F(ExpressionBlock, ComputesItsFormulaAlsoWhenThatChanges) {
+TEST_F(Expression, ComputesItsFormulaAlsoWhenThatChanges) {
   ASSERT_TRUE(Set("a * c").ok());
   ASSERT_TRUE(block_.Start().ok());
   ASSERT_TRUE(block_.Run().ok());
@@ -32,12 +32,12 @@ TEST_F(ExpressionBlock, ComputesItsFormulaAlsoWhenThatChanges) {
   EXPECT_FALSE(*block_.Output<bool>("is_true"));
 }
 
-TEST_F(ExpressionBlock, RefusesWhatIsNoFormula) {
+TEST_F(Expression, RefusesWhatIsNoFormula) {
   EXPECT_EQ(Set("a +"), InvalidArgument("formula: at character 4: expected a number, a name or ("));
   EXPECT_FALSE(Set("system(1)").ok());
 }
 
-TEST_F(ExpressionBlock, NeedsTheInputsThatItsFormulaUses) {
+TEST_F(Expression, NeedsTheInputsThatItsFormulaUses) {
   ASSERT_TRUE(Set("a + b").ok());
   EXPECT_EQ(block_.Start(), FailedPrecondition("the formula uses b: connect this input"));
   ASSERT_TRUE(Set("a + c").ok());

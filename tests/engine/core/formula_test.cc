@@ -1,4 +1,4 @@
-#include "engine/core/expression.h"
+#include "engine/core/formula.h"
 
 #include <gtest/gtest.h>
 
@@ -13,18 +13,18 @@ namespace {
 
 const std::vector<std::string> kNames = {"a", "b", "part_1"};
 
-double Value(const std::string& formula) {
+double Value(const std::string& text) {
   const double values[] = {3, 4, 0.5};
-  const auto expression = Expression::Parse(formula, kNames);
-  return expression ? expression->Evaluate(values) : std::numeric_limits<double>::quiet_NaN();
+  const auto formula = Formula::Parse(text, kNames);
+  return formula ? formula->Evaluate(values) : std::numeric_limits<double>::quiet_NaN();
 }
 
-std::string ErrorOf(const std::string& formula) {
-  const auto expression = Expression::Parse(formula, kNames);
-  return expression ? "none" : expression.error().message();
+std::string ErrorOf(const std::string& text) {
+  const auto formula = Formula::Parse(text, kNames);
+  return formula ? "none" : formula.error().message();
 }
 
-TEST(Expression, FollowsTheUsualStrengthOfOperators) {
+TEST(Formula, FollowsTheUsualStrengthOfOperators) {
   EXPECT_EQ(Value("1 + 2 * 3"), 7);
   EXPECT_EQ(Value("(1 + 2) * 3"), 9);
   EXPECT_EQ(Value("10 - 4 - 3"), 3);
@@ -39,7 +39,7 @@ TEST(Expression, FollowsTheUsualStrengthOfOperators) {
   EXPECT_EQ(Value("1 < 2 && 2 <= 2 && 3 > 2 && 2 >= 2 && 1 != 2"), 1);
 }
 
-TEST(Expression, KnowsNamesNumbersAndFunctions) {
+TEST(Formula, KnowsNamesNumbersAndFunctions) {
   EXPECT_EQ(Value("a+b*part_1"), 5);
   EXPECT_EQ(Value(".5e1"), 5);
   EXPECT_EQ(Value("max(a, b) - min(a, b)"), 1);
@@ -50,14 +50,14 @@ TEST(Expression, KnowsNamesNumbersAndFunctions) {
   EXPECT_EQ(Value("exp(0) + log(1) + cos(0) + sin(0) + tan(0) + atan2(0, 1)"), 2);
 }
 
-TEST(Expression, ComputesAsIeeeNumbersDo) {
+TEST(Formula, ComputesAsIeeeNumbersDo) {
   EXPECT_EQ(Value("1 / 0"), std::numeric_limits<double>::infinity());
-  EXPECT_TRUE(std::isnan(Expression::Parse("sqrt(-1)", {})->Evaluate(nullptr)));
+  EXPECT_TRUE(std::isnan(Formula::Parse("sqrt(-1)", {})->Evaluate(nullptr)));
   EXPECT_EQ(Value("if(sqrt(-1), 1, 2)"), 2) << "what is no number is not true";
   EXPECT_EQ(Value("!sqrt(-1)"), 1);
 }
 
-TEST(Expression, SaysWhereItIsWrong) {
+TEST(Formula, SaysWhereItIsWrong) {
   EXPECT_EQ(ErrorOf(""), "at character 1: expected a number, a name or (");
   EXPECT_EQ(ErrorOf("a +"), "at character 4: expected a number, a name or (");
   EXPECT_EQ(ErrorOf("a b"), "at character 3: expected an operator");
@@ -69,7 +69,7 @@ TEST(Expression, SaysWhereItIsWrong) {
   EXPECT_EQ(ErrorOf("a = b"), "at character 3: expected an operator");
 }
 
-TEST(Expression, BoundsNesting) {
+TEST(Formula, BoundsNesting) {
   const std::string deep(100'000, '(');
   EXPECT_NE(ErrorOf(deep).find("too much is nested here"), std::string::npos);
   EXPECT_NE(ErrorOf(std::string(100'000, '-') + "1").find("too much"), std::string::npos);
@@ -78,14 +78,14 @@ TEST(Expression, BoundsNesting) {
   EXPECT_EQ(Value(sum), 1001) << "long is not deep";
 }
 
-TEST(Expression, KnowsWhichNamesItUses) {
-  const auto expression = Expression::Parse("a + 2 * part_1", kNames).value();
-  EXPECT_TRUE(expression.Uses(0));
-  EXPECT_FALSE(expression.Uses(1));
-  EXPECT_TRUE(expression.Uses(2));
+TEST(Formula, KnowsWhichNamesItUses) {
+  const auto formula = Formula::Parse("a + 2 * part_1", kNames).value();
+  EXPECT_TRUE(formula.Uses(0));
+  EXPECT_FALSE(formula.Uses(1));
+  EXPECT_TRUE(formula.Uses(2));
 }
 
-TEST(Expression, SurvivesRandomText) {
+TEST(Formula, SurvivesRandomText) {
   std::mt19937 random(1);
   const std::vector<std::string> pieces = {"a",  "b", "part_1", "(", ")", ",",   "+",
                                            "-",  "!", "&&",     "<", "1", ".5",  "max",
@@ -94,11 +94,11 @@ TEST(Expression, SurvivesRandomText) {
   for (int round = 0; round < 50'000; ++round) {
     std::string text;
     for (size_t i = 1 + random() % 8; i > 0; --i) text += pieces[random() % pieces.size()];
-    const auto expression = Expression::Parse(text, kNames);
-    if (!expression) continue;
+    const auto formula = Formula::Parse(text, kNames);
+    if (!formula) continue;
     ++accepted;
     const double values[] = {1, 2, 3};
-    expression->Evaluate(values);
+    formula->Evaluate(values);
   }
   EXPECT_GT(accepted, 1000);
 }

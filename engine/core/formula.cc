@@ -1,4 +1,4 @@
-#include "engine/core/expression.h"
+#include "engine/core/formula.h"
 
 #include <algorithm>
 #include <charconv>
@@ -73,20 +73,20 @@ auto FindFunction(const Table& table, std::string_view name) {
 }  // namespace
 
 // Recursive descent; the first error ends it.
-class ExpressionParser {
+class FormulaParser {
  public:
-  ExpressionParser(std::string_view text, const std::vector<std::string>& names)
+  FormulaParser(std::string_view text, const std::vector<std::string>& names)
       : text_(text), names_(names) {}
 
-  Result<Expression> Parse() {
+  Result<Formula> Parse() {
     Combined(0);
     if (error_.empty() && !AtEnd()) Fail("expected an operator");
     if (!error_.empty()) return InvalidArgument(error_);
-    return std::move(expression_);
+    return std::move(formula_);
   }
 
  private:
-  using Step = Expression::Step;
+  using Step = Formula::Step;
 
   void Fail(std::string_view what) {
     if (error_.empty()) error_ = Str("at character ", at_ + 1, ": ", what);
@@ -109,7 +109,7 @@ class ExpressionParser {
   void Emit(const Step& step, int taken) {
     operands_ += 1 - taken;
     if (operands_ > kMaxOperands) Fail("too much is nested here");
-    if (error_.empty()) expression_.steps_.push_back(step);
+    if (error_.empty()) formula_.steps_.push_back(step);
   }
   void EmitUnary(UnaryFunction function) {
     Step step;
@@ -215,14 +215,14 @@ class ExpressionParser {
   int operands_ = 0;
   int nesting_ = 0;
   std::string error_;
-  Expression expression_;
+  Formula formula_;
 };
 
-Result<Expression> Expression::Parse(std::string_view text, const std::vector<std::string>& names) {
-  return ExpressionParser(text, names).Parse();
+Result<Formula> Formula::Parse(std::string_view text, const std::vector<std::string>& names) {
+  return FormulaParser(text, names).Parse();
 }
 
-double Expression::Evaluate(const double* values) const {
+double Formula::Evaluate(const double* values) const {
   double stack[kMaxOperands] = {};
   int top = -1;
   for (const Step& step : steps_) {
@@ -241,7 +241,7 @@ double Expression::Evaluate(const double* values) const {
   return stack[0];
 }
 
-bool Expression::Uses(int name) const {
+bool Formula::Uses(int name) const {
   return std::any_of(steps_.begin(), steps_.end(),
                      [name](const Step& step) { return step.name == name; });
 }

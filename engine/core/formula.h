@@ -14,11 +14,11 @@ namespace vs {
 // parentheses, decimal numbers, if(condition, then, otherwise) and the functions abs atan2 ceil cos
 // exp floor hypot log max min pow round sin sqrt tan. True is 1 and false is 0; all but 0 and NaN
 // count as true. Arithmetic of IEEE doubles: 1 / 0 is infinite, sqrt(-1) is NaN.
-class Expression {
+class Formula {
  public:
   // INVALID_ARGUMENT with the place ("at character 5: ...") of what is no formula, or nested too
   // deeply.
-  static Result<Expression> Parse(std::string_view text, const std::vector<std::string>& names);
+  static Result<Formula> Parse(std::string_view text, const std::vector<std::string>& names);
 
   // `values` are those of the names, in their order. Takes no heap memory. Thread-safe.
   double Evaluate(const double* values) const;
@@ -26,7 +26,7 @@ class Expression {
   bool Uses(int name) const;
 
  private:
-  friend class ExpressionParser;
+  friend class FormulaParser;
 
   // One of: a number, a name, a function of one or of two numbers, or the choice of if().
   struct Step {
