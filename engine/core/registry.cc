@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "engine/base/check.h"
+
 namespace vs {
 
 BlockRegistry& BlockRegistry::Get() {
@@ -11,7 +13,9 @@ BlockRegistry& BlockRegistry::Get() {
 
 bool BlockRegistry::Add(std::string type, BlockInfo info, Factory make) {
   Entry entry{type, std::move(info), std::move(make)};
-  return entries_.emplace(std::move(type), std::move(entry)).second;
+  const bool added = entries_.emplace(std::move(type), std::move(entry)).second;
+  VS_CHECK(added);
+  return added;
 }
 
 const BlockRegistry::Entry* BlockRegistry::Find(const std::string& type) const {

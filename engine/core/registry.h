@@ -29,6 +29,7 @@ class BlockRegistry {
   };
 
   static BlockRegistry& Get();
+  // True. Two types of one name are a bug of ours, found as soon as the program starts.
   bool Add(std::string type, BlockInfo info, Factory make);
   // Null when there is no such type.
   const Entry* Find(const std::string& type) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/base/check.h"
 #include "engine/base/str.h"
 
 namespace vs {
@@ -13,6 +14,8 @@ StereoMatchers& StereoMatchers::Get() {
 }
 
 bool StereoMatchers::Add(std::string name, int speed_rank, MatcherFactory factory) {
+  VS_CHECK(std::none_of(entries_.begin(), entries_.end(),
+                        [&](const Entry& entry) { return entry.name == name; }));
   entries_.push_back({std::move(name), speed_rank, std::move(factory)});
   std::stable_sort(entries_.begin(), entries_.end(),
                    [](const Entry& a, const Entry& b) { return a.speed_rank > b.speed_rank; });

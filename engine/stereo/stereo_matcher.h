@@ -42,7 +42,8 @@ class StereoMatchers {
  public:
   static StereoMatchers& Get();
 
-  // A higher rank is a faster backend: 0 reference, 100 CPU, 200 GPU.
+  // True. A higher rank is a faster backend: 0 reference, 100 CPU, 200 GPU. Two backends of one
+  // name are a bug of ours.
   bool Add(std::string name, int speed_rank, MatcherFactory factory);
   // Fastest first.
   std::vector<std::string> Names() const;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <random>
 
+#include "engine/base/check.h"
 #include "engine/base/str.h"
 #include "engine/stereo/match_right_view.h"
 #include "engine/stereo/stereo_matcher.h"
@@ -243,6 +244,14 @@ TEST(SgmSettings, AllWrongFieldsAreNamedAtOnce) {
   EXPECT_THAT(status.faults(), Contains(Fault{"p1", "is 66; it must be 0 .. p2, which is 65"}));
   EXPECT_THAT(status.faults(), Contains(Fault{"median", "is 4 px; it must be 0 (off), 3 or 5 px"}));
   EXPECT_TRUE(ValidateSettings({}).ok());
+}
+
+TEST(StereoMatchers, RefuseTwoBackendsOfOneName) {
+  StereoMatchers matchers;
+  const auto nowhere = [] { return NotFound("no device"); };
+  matchers.Add("cuda", 200, nowhere);
+  EXPECT_THROW(matchers.Add("cuda", 100, nowhere), BrokenInvariant);
+  EXPECT_THAT(matchers.Names(), testing::ElementsAre("cuda"));
 }
 
 TEST(StereoMatchers, AutoTakesTheFastestThatRuns) {
