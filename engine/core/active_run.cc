@@ -175,7 +175,9 @@ void ActiveRun::ExecuteEntry() {
   });
   MutexLock lock(queue_.mutex);
   entry_pushed_ = false;
-  if (!exception.empty()) {
+  if (fault_) {
+    // A block threw meanwhile: the run is over, and why is known.
+  } else if (!exception.empty()) {
     last_error_ = Str(info_->block_ids[asked], ": ", exception);
     Fail();
   } else if (ready && phase_ == Phase::kOpen) {

@@ -113,6 +113,29 @@ TEST_F(SchedulerFaultTest, AnExceptionOfReadyIsAFaultToo) {
   EXPECT_EQ(run->Stats().last_error, "source: exception: no sensor");
 }
 
+TEST_F(SchedulerFaultTest, TheFirstOfTwoExceptionsIsTheOneThatIsTold) {
+  MakeWorkers(2);
+  Gate asked;
+  Gate faulted;
+  std::atomic<int> questions = 0;
+  ProbeOf("source").ready = [&] {
+    if (++questions == 1) return true;
+    asked.Open();
+    faulted.Wait();
+    throw std::runtime_error("no sensor");
+  };
+  ProbeOf("bad").run = [&](const StepRun&) -> Status {
+    asked.Wait();
+    throw std::runtime_error("boom");
+  };
+  const auto run = Start(ChainSpec("line", {"bad"}));
+  ASSERT_TRUE(WaitUntil([&] { return run->Stats().state == RunState::kFault; }));
+  faulted.Open();
+  run->Stop();
+  EXPECT_EQ(questions, 2);
+  EXPECT_EQ(run->Stats().last_error, "bad: exception: boom");
+}
+
 TEST_F(SchedulerFaultTest, StartsTowardsTheSourcesAndStopsFromThem) {
   MakeWorkers(2);
   Watch({"source", "one", "two"});
