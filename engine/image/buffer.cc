@@ -29,13 +29,14 @@ struct BufferPool::State {
     for (size_t i = free.size(); i-- > 0;) {
       if (free[i].size_bytes != size_bytes) continue;
       const Slab slab = free[i];
-      free[i] = free.back();
-      free.pop_back();
+      free.erase(free.begin() + static_cast<std::ptrdiff_t>(i));
       return slab;
     }
+    DropOldest();
     auto* data = static_cast<std::byte*>(std::aligned_alloc(kPageBytes, size_bytes));
     if (data == nullptr) throw std::bad_alloc();
     ++slabs_made;
+    bytes_held += size_bytes;
     return {data, size_bytes};
   }
 
@@ -44,9 +45,18 @@ struct BufferPool::State {
     free.push_back(slab);
   }
 
+  void DropOldest() VS_REQUIRES(mutex) {
+    while (free.size() > kMaxIdleSlabs) {
+      bytes_held -= free.front().size_bytes;
+      std::free(free.front().data);
+      free.erase(free.begin());
+    }
+  }
+
   Mutex mutex;
-  std::vector<Slab> free VS_GUARDED_BY(mutex);
+  std::vector<Slab> free VS_GUARDED_BY(mutex);  // given back last at the end
   uint64_t slabs_made VS_GUARDED_BY(mutex) = 0;
+  size_t bytes_held VS_GUARDED_BY(mutex) = 0;
   Recycler<std::byte> control_blocks;
 };
 
@@ -65,6 +75,11 @@ Buffer BufferPool::Acquire(size_t size_bytes) {
 uint64_t BufferPool::SlabsMade() const {
   MutexLock lock(state_->mutex);
   return state_->slabs_made;
+}
+
+size_t BufferPool::BytesHeld() const {
+  MutexLock lock(state_->mutex);
+  return state_->bytes_held;
 }
 
 }  // namespace vs

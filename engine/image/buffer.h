@@ -26,6 +26,10 @@ struct Buffer {
 // Recycles page-aligned host memory. After the first frames every Acquire is served from memory
 // that an earlier frame gave back, without asking the heap. Thread-safe; buffers may outlive the
 // pool. The memory is not cleared.
+//
+// When sizes change, memory of sizes that come no more would pile up: so whenever a slab of a new
+// size is made, only the kMaxIdleSlabs that were given back last are kept of the others. That is
+// more than any block uses for one frame, so in a warm sequence nothing is made or freed.
 class BufferPool {
  public:
   BufferPool();
@@ -35,8 +39,12 @@ class BufferPool {
 
   Buffer Acquire(size_t size_bytes);
 
+  static constexpr size_t kMaxIdleSlabs = 16;
+
   // Slabs that this pool ever took from the heap: constant once the sequence is warm.
   uint64_t SlabsMade() const;
+  // Of all slabs that it has now, idle and in use.
+  size_t BytesHeld() const;
 
  private:
   struct State;

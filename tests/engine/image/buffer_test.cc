@@ -24,6 +24,40 @@ TEST(BufferPool, GivesTheSameMemoryAgainOnceTheLastReaderLetGo) {
   EXPECT_EQ(pool.SlabsMade(), 2u);
 }
 
+constexpr size_t kPageBytes = 4096;
+
+TEST(BufferPool, KeepsLittleOfSizesThatComeNoMore) {
+  BufferPool pool;
+  for (size_t pages = 1; pages <= 100; ++pages) (void)pool.Acquire(pages * kPageBytes);
+  EXPECT_EQ(pool.SlabsMade(), 100u);
+  // 84 .. 100 pages: the new slab and the 16 before it.
+  EXPECT_EQ(pool.BytesHeld(), 17 * 92 * kPageBytes);
+}
+
+TEST(BufferPool, MakesNothingNewWhileTheSameFewSizesComeAgain) {
+  BufferPool pool;
+  for (int frame = 0; frame < 10; ++frame) {
+    for (size_t pages = 1; pages <= BufferPool::kMaxIdleSlabs; ++pages) {
+      (void)pool.Acquire(pages * kPageBytes);
+    }
+  }
+  EXPECT_EQ(pool.SlabsMade(), BufferPool::kMaxIdleSlabs);
+}
+
+TEST(BufferPool, NeverFreesWhatIsInUse) {
+  BufferPool pool;
+  std::vector<Buffer> in_use;
+  for (size_t pages = 1; pages <= 40; ++pages) {
+    in_use.push_back(pool.Acquire(pages * kPageBytes));
+    in_use.back().data[0] = std::byte{static_cast<uint8_t>(pages)};
+  }
+  (void)pool.Acquire(100 * kPageBytes);
+  EXPECT_EQ(pool.BytesHeld(), (820 + 100) * kPageBytes);  // 1 + 2 + ... + 40 = 820
+  for (size_t i = 0; i < in_use.size(); ++i) {
+    EXPECT_EQ(in_use[i].data[0], std::byte{static_cast<uint8_t>(i + 1)});
+  }
+}
+
 TEST(BufferPool, BuffersOutliveThePool) {
   Buffer buffer;
   {
