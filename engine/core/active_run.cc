@@ -283,6 +283,7 @@ void ActiveRun::TaskDone() {
 }
 
 Result<uint64_t> ActiveRun::SetParameters(const std::vector<ParamAssignment>& batch) {
+  MutexLock one_after_the_other(editing_);
   VS_RETURN_IF_ERROR(parameters_.Check(batch));
   MutexLock lock(queue_.mutex);
   if (phase_ != Phase::kOpen) {

@@ -103,6 +103,7 @@ class ActiveRun final : public Run, public std::enable_shared_from_this<ActiveRu
   RecentTimes latencies_;
   RecentTimes completions_;
 
+  Mutex editing_;    // held while a batch is checked and changed, before queue_.mutex
   CondVar changed_;  // of phase_ or tasks_
   Phase phase_ VS_GUARDED_BY(queue_.mutex) = Phase::kStarting;
   bool fault_ VS_GUARDED_BY(queue_.mutex) = false;

@@ -127,6 +127,9 @@ class Checker {
         Add(Str(subject, ".", name), status.message());
       }
     }
+    for (Fault& fault : CheckParamsTogether({subject, block.type, block.params})) {
+      faults_.push_back(std::move(fault));
+    }
   }
 
   Node* FindNode(const std::string& id) {
@@ -216,5 +219,21 @@ class Checker {
 }  // namespace
 
 std::vector<Fault> CheckSequence(const SequenceSpec& spec) { return Checker(spec).Check(); }
+
+std::vector<Fault> CheckParamsTogether(const BlockSpec& spec) {
+  const BlockRegistry::Entry* entry = BlockRegistry::Get().Find(spec.type);
+  if (entry == nullptr) return {};
+  const std::unique_ptr<Block> block = entry->make();
+  for (const auto& [name, value] : spec.params) {
+    ParamBase* param = block->FindParam(name);
+    if (param == nullptr || !param->Set(value).ok()) return {};
+  }
+  const Status status = block->CheckParams();
+  if (status.ok()) return {};
+  if (status.faults().empty()) return {{spec.id, status.message()}};
+  std::vector<Fault> faults = status.faults();
+  for (Fault& fault : faults) fault.subject = Str(spec.id, ".", fault.subject);
+  return faults;
+}
 
 }  // namespace vs

@@ -1,23 +1,15 @@
 #include "engine/core/live_parameters.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 
 #include "engine/base/check.h"
 #include "engine/base/str.h"
+#include "engine/core/check_sequence.h"
 
 namespace vs {
-namespace {
-
-// As the block will hold it: an integer given for a number is a number.
-ParamValue AsHeld(const ParamValue& value, const ParamBase& param) {
-  const auto* integer = std::get_if<int64_t>(&value);
-  if (integer == nullptr || !std::holds_alternative<double>(param.info().initial)) return value;
-  return static_cast<double>(*integer);
-}
-
-}  // namespace
 
 LiveParameters::LiveParameters(Sequence* sequence)
     : sequence_(*sequence),
@@ -45,6 +37,7 @@ Status LiveParameters::Check(const std::vector<ParamAssignment>& batch) const {
   std::vector<Fault> faults;
   bool only_not_live = true;
   std::set<std::string> seen;
+  std::map<int, BlockSpec> changed;  // as they would be, with what does not fit too
   const auto refuse = [&](std::string subject, std::string message, bool not_live = false) {
     faults.push_back({std::move(subject), std::move(message)});
     only_not_live = only_not_live && not_live;
@@ -62,10 +55,18 @@ Status LiveParameters::Check(const std::vector<ParamAssignment>& batch) const {
     }
     const std::string subject = Str(one.block, ".", one.param);
     if (!seen.insert(subject).second) refuse(subject, "is set twice");
+    const auto [block, is_new] = changed.try_emplace(node);
+    if (is_new) block->second = BlockNow(node);
+    block->second.params[one.param] = one.value;
     if (const Status status = param->Check(one.value); !status.ok()) {
       refuse(subject, status.message());
     } else if (!param->info().live) {
       refuse(subject, "can only change while the sequence is stopped", true);
+    }
+  }
+  for (const auto& [node, block] : changed) {
+    for (Fault& fault : CheckParamsTogether(block)) {
+      refuse(std::move(fault.subject), std::move(fault.message));
     }
   }
   if (faults.empty()) return Status();
@@ -74,6 +75,17 @@ Status LiveParameters::Check(const std::vector<ParamAssignment>& batch) const {
       only_not_live ? StatusCode::kFailedPrecondition : StatusCode::kInvalidArgument,
       Str("nothing was changed: ", count, count == 1 ? " value" : " values", " cannot be set"),
       std::move(faults));
+}
+
+BlockSpec LiveParameters::BlockNow(int index) const {
+  const Sequence::Node& node = sequence_.nodes()[index];
+  BlockSpec block{node.id, node.type, {}};
+  MutexLock lock(mutex_);
+  for (size_t i = 0; i < node.block->params().size(); ++i) {
+    const ParamAssignment& one = values_[nodes_[index].first_value + i];
+    block.params[one.param] = one.value;
+  }
+  return block;
 }
 
 void LiveParameters::Change(const std::vector<ParamAssignment>& batch, uint64_t first_frame) {
@@ -86,7 +98,7 @@ void LiveParameters::Change(const std::vector<ParamAssignment>& batch, uint64_t 
     });
     VS_CHECK(place != params.end());
     PerNode& node = nodes_[index];
-    values_[node.first_value + (place - params.begin())].value = AsHeld(one.value, **place);
+    values_[node.first_value + (place - params.begin())].value = (*place)->AsHeld(one.value);
     // Many changes before one frame, perhaps while no frame comes, take the place of one.
     const auto same =
         std::find_if(node.pending.begin(), node.pending.end(), [&](const Pending& pending) {

@@ -23,7 +23,8 @@ class LiveParameters {
   uint64_t Revision() const;
 
   // All faults of the batch at once: INVALID_ARGUMENT, or FAILED_PRECONDITION when it is only that
-  // parameters are not live.
+  // parameters are not live. What passes holds as long as nobody else changes something before it
+  // is changed.
   Status Check(const std::vector<ParamAssignment>& batch) const;
   // Makes a checked batch hold from `first_frame` on, which has not been stamped.
   void Change(const std::vector<ParamAssignment>& batch, uint64_t first_frame);
@@ -44,6 +45,9 @@ class LiveParameters {
     std::atomic<bool> any = false;  // pending is not empty
     std::vector<Pending> pending;   // in order of first_frame
   };
+
+  // With the values in effect.
+  BlockSpec BlockNow(int index) const;
 
   Sequence& sequence_;
   mutable Mutex mutex_;

@@ -101,6 +101,12 @@ Status ParamBase::Check(const ParamValue& value) const {
   return CheckFurther(value).Annotated(info_.name);
 }
 
+ParamValue ParamBase::AsHeld(const ParamValue& value) const {
+  const auto* integer = std::get_if<int64_t>(&value);
+  if (integer == nullptr || !std::holds_alternative<double>(info_.initial)) return value;
+  return static_cast<double>(*integer);
+}
+
 Status ParamBase::Set(const ParamValue& value) {
   VS_RETURN_IF_ERROR(Check(value));
   Assign(value);

@@ -45,6 +45,8 @@ class ParamBase {
   // INVALID_ARGUMENT or OUT_OF_RANGE with the range and unit when `value` cannot be set. An integer
   // is accepted for a number; a text has at most 4096 bytes and no control characters but newline.
   Status Check(const ParamValue& value) const;
+  // The value as the block holds it: an integer given for a number becomes that number.
+  ParamValue AsHeld(const ParamValue& value) const;
   virtual ParamValue Get() const = 0;
   // Changes the value at once. Only between two runs of the block; the scheduler sees to that.
   Status Set(const ParamValue& value);

@@ -1,11 +1,13 @@
 #include "server/sequences/sequence_parameters.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 
 #include "engine/base/str.h"
 #include "engine/core/block.h"
+#include "engine/core/check_sequence.h"
 #include "engine/core/registry.h"
 
 namespace vs {
@@ -19,10 +21,15 @@ const BlockParameter* Find(const std::vector<BlockParameter>& parameters, const 
   return found == parameters.end() ? nullptr : &*found;
 }
 
-ParamValue InOwnType(const ParamInfo& info, const ParamValue& value) {
-  const auto* integer = std::get_if<int64_t>(&value);
-  if (integer == nullptr || !std::holds_alternative<double>(info.initial)) return value;
-  return static_cast<double>(*integer);
+// A block with the values in effect.
+BlockSpec BlockNow(const std::vector<BlockParameter>& parameters, const std::string& id) {
+  BlockSpec block{id, "", {}};
+  for (const BlockParameter& one : parameters) {
+    if (one.block != id) continue;
+    block.type = one.type;
+    block.params[one.info().name] = one.value;
+  }
+  return block;
 }
 
 // Collects what is wrong with each assignment. What cannot be set at all outweighs what this caller
@@ -87,7 +94,7 @@ std::vector<BlockParameter> ParametersOf(const SequenceSpec& spec) {
           {block_spec.id,
            block_spec.type,
            {block, param},
-           stored == block_spec.params.end() ? info.initial : InOwnType(info, stored->second)});
+           stored == block_spec.params.end() ? info.initial : param->AsHeld(stored->second)});
     }
   }
   return parameters;
@@ -109,6 +116,7 @@ Result<std::vector<ParamAssignment>> CheckAssignments(
     const ChangeRules& rules) {
   std::vector<ParamAssignment> checked;
   std::set<std::pair<std::string, std::string>> seen;
+  std::map<std::string, BlockSpec> changed;  // as they would be, with what does not fit too
   FaultList faults;
   for (const ParamAssignment& one : assignments) {
     const std::string path = one.block + "." + one.param;
@@ -121,12 +129,20 @@ Result<std::vector<ParamAssignment>> CheckAssignments(
       faults.Add(StatusCode::kInvalidArgument, path, "is there twice");
       continue;
     }
+    const auto [block, is_new] = changed.try_emplace(one.block);
+    if (is_new) block->second = BlockNow(parameters, one.block);
+    block->second.params[one.param] = one.value;
     if (const Status fits = parameter->param->Check(one.value); !fits.ok()) {
       faults.Add(StatusCode::kInvalidArgument, path, fits.message());
     } else if (const Status allowed = Judge(parameter->info(), rules); !allowed.ok()) {
       faults.Add(allowed.code(), path, allowed.message());
     } else {
-      checked.push_back({one.block, one.param, InOwnType(parameter->info(), one.value)});
+      checked.push_back({one.block, one.param, parameter->param->AsHeld(one.value)});
+    }
+  }
+  for (const auto& [id, block] : changed) {
+    for (Fault& fault : CheckParamsTogether(block)) {
+      faults.Add(StatusCode::kInvalidArgument, std::move(fault.subject), std::move(fault.message));
     }
   }
   VS_RETURN_IF_ERROR(faults.ToStatus());
@@ -142,7 +158,6 @@ Result<std::vector<ParamAssignment>> InitialValues(const std::vector<BlockParame
       if (Judge(one.info(), rules).ok())
         initial.push_back({one.block, one.info().name, one.info().initial});
     }
-    return initial;
   }
   for (const std::string& path : paths) {
     VS_ASSIGN_OR_RETURN(ParamAssignment assignment, SplitPath(path));
@@ -160,11 +175,7 @@ void Store(const std::vector<ParamAssignment>& checked,
     const BlockParameter* parameter = Find(parameters, one.block, one.param);
     for (BlockSpec& block : spec->blocks) {
       if (block.id != one.block || block.type != parameter->type) continue;
-      if (one.value == parameter->info().initial) {
-        block.params.erase(one.param);
-      } else {
-        block.params[one.param] = one.value;
-      }
+      block.params[one.param] = one.value;
     }
   }
 }

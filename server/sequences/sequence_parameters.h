@@ -36,7 +36,8 @@ struct ChangeRules {
 
 // The assignments with their values in the parameters' own types (an integer for a number becomes
 // that number), or all that is wrong with them at once: INVALID_ARGUMENT for unknown names, wrong
-// types and ranges and a parameter named twice; else PERMISSION_DENIED or FAILED_PRECONDITION.
+// types and ranges, values that do not go together and a parameter named twice; else
+// PERMISSION_DENIED or FAILED_PRECONDITION.
 Result<std::vector<ParamAssignment>> CheckAssignments(
     const std::vector<BlockParameter>& parameters, const std::vector<ParamAssignment>& assignments,
     const ChangeRules& rules);
@@ -47,8 +48,8 @@ Result<std::vector<ParamAssignment>> InitialValues(const std::vector<BlockParame
                                                    const std::vector<std::string>& paths,
                                                    const ChangeRules& rules);
 
-// Writes checked values into a spec, which keeps only those that differ from the initial value.
-// Blocks that the spec does not have, or has with another type, are left out.
+// Writes checked values into a spec. Blocks that the spec does not have, or has with another type,
+// are left out.
 void Store(const std::vector<ParamAssignment>& checked,
            const std::vector<BlockParameter>& parameters, SequenceSpec* spec);
 

@@ -53,6 +53,7 @@ class BlockHarness {
     inputs_[input] = std::move(value);
   }
   Status Start() {
+    VS_RETURN_IF_ERROR(block_->CheckParams());
     block_->Attach(&environment, frame.run, [] {});
     return block_->Start();
   }

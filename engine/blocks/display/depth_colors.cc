@@ -1,6 +1,7 @@
 // Turns depth into a picture for people.
 #include <utility>
 
+#include "engine/base/str.h"
 #include "engine/core/block.h"
 #include "engine/stereo/color_map.h"
 
@@ -36,8 +37,12 @@ class DepthColors final : public Block {
                        .operator_editable = true,
                        .doc = "Depth that gets the colour of the farthest."}};
 
+  Status CheckParams() const override {
+    if (*near_m < *far_m) return Status();
+    return InvalidArgument(Str("near_m (", *near_m, ") must be less than far_m (", *far_m, ")"));
+  }
+
   Status Run() override {
-    if (*near_m >= *far_m) return InvalidArgument("near_m must be less than far_m");
     picture.Set(ColorizeDepth(*depth, ChosenColors(), *near_m, *far_m, pool()));
     return {};
   }

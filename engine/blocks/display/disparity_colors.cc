@@ -1,6 +1,7 @@
 // Turns disparity into a picture for people.
 #include <utility>
 
+#include "engine/base/str.h"
 #include "engine/core/block.h"
 #include "engine/stereo/color_map.h"
 
@@ -36,8 +37,13 @@ class DisparityColors final : public Block {
                          .operator_editable = true,
                          .doc = "Disparity that gets the colour of the nearest."}};
 
+  Status CheckParams() const override {
+    if (*far_px < *near_px) return Status();
+    return InvalidArgument(
+        Str("far_px (", *far_px, ") must be less than near_px (", *near_px, ")"));
+  }
+
   Status Run() override {
-    if (*far_px >= *near_px) return InvalidArgument("far_px must be less than near_px");
     picture.Set(ColorizeDisparity(*disparity, ChosenColors(), *far_px, *near_px, pool()));
     return {};
   }

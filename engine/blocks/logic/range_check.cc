@@ -38,12 +38,14 @@ class RangeCheck final : public Block {
                              .doc = "A good value nearer than this to a limit is a warning; 0 = "
                                     "never."}};
 
+  Status CheckParams() const override {
+    if (*limits != "both" || *min <= *max) return Status();
+    return InvalidArgument(Str("min (", *min, ") must not be above max (", *max, ")"));
+  }
+
   Status Run() override {
     const bool low = *limits != "max";
     const bool high = *limits != "min";
-    if (low && high && *min > *max) {
-      return InvalidArgument(Str("min (", *min, ") must not be above max (", *max, ")"));
-    }
     constexpr double kNone = std::numeric_limits<double>::infinity();
     const double distance = std::min(low ? *value - *min : kNone, high ? *max - *value : kNone);
     const bool good = distance >= 0;  // not for NaN

@@ -270,6 +270,8 @@ class SgmStereo final : public Block {
                                .doc = "Fill all that is left with the farther of its neighbours in "
                                       "the row: a dense map for looking at, not for measuring."}};
 
+  Status CheckParams() const override { return ValidateSettings(Settings()); }
+
   Status Start() override {
     VS_ASSIGN_OR_RETURN(matcher_, StereoMatchers::Get().Make(*backend));
     return {};

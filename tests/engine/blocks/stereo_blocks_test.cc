@@ -123,9 +123,9 @@ TEST_F(StereoBlocks, MatchingNamesWrongParameters) {
   match.Input("pair", Pair());
   ASSERT_TRUE(match.Set("p1", int64_t{40}).ok());
   ASSERT_TRUE(match.Set("p2", int64_t{20}).ok());
-  ASSERT_TRUE(match.Start().ok());
-  EXPECT_THAT(match.Run().ToString(), HasSubstr("p1: is 40; it must be 0 .. p2, which is 20"));
+  EXPECT_THAT(match.Start().ToString(), HasSubstr("p1: is 40; it must be 0 .. p2, which is 20"));
   ASSERT_TRUE(match.Set("p2", int64_t{40}).ok());
+  ASSERT_TRUE(match.Start().ok());
   EXPECT_TRUE(match.Run().ok());
   EXPECT_EQ(match.Set("num_disparities", int64_t{257}).code(), StatusCode::kOutOfRange);
   EXPECT_FALSE(match.Set("cost", std::string("ssd")).ok());
@@ -148,13 +148,22 @@ TEST_F(StereoBlocks, ColoursAskForASensibleRange) {
   colors.Input("disparity", Match("left"));
   ASSERT_TRUE(colors.Set("near_px", 40.0).ok());
   ASSERT_TRUE(colors.Set("far_px", 40.0).ok());
-  EXPECT_EQ(colors.Run().code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(colors.Start(), InvalidArgument("far_px (40) must be less than near_px (40)"));
   ASSERT_TRUE(colors.Set("far_px", 20.0).ok());
+  ASSERT_TRUE(colors.Start().ok());
   for (const char* name : {"grey", "hue", "turbo", "viridis"}) {
     ASSERT_TRUE(colors.Set("colors", std::string(name)).ok());
     ASSERT_TRUE(colors.Run().ok());
     EXPECT_EQ(colors.Output<ColorImage>("picture")->width(), 648);
   }
+}
+
+TEST(DepthColors, WantsNearBeforeFar) {
+  BlockHarness colors("DepthColors");
+  ASSERT_TRUE(colors.Set("near_m", 2.5).ok());
+  EXPECT_EQ(colors.Start(), InvalidArgument("near_m (2.5) must be less than far_m (2)"));
+  ASSERT_TRUE(colors.Set("far_m", int64_t{3}).ok());
+  EXPECT_TRUE(colors.Start().ok());
 }
 
 class RectifyBlock : public StereoBlocks {

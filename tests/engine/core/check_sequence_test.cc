@@ -73,6 +73,20 @@ TEST(CheckSequence, ReportsEveryFaultAtOnce) {
           "some: connect at least one of its inputs: a, b"));
 }
 
+TEST(CheckSequence, ChecksParametersThatEachFitAlsoTogether) {
+  SequenceSpec spec = ChainSpec("line", {"one"});
+  spec.blocks.push_back({"swapped", "TestLimits", {{"low", int64_t{7}}, {"high", 5.0}}});
+  spec.blocks.push_back({"above", "TestLimits", {{"low", int64_t{11}}}});
+  spec.blocks.push_back({"wrong", "TestLimits", {{"low", 11.0}, {"high", 101.0}}});
+  spec.blocks.push_back({"good", "TestLimits", {{"low", 11.0}, {"high", 11.0}}});
+  for (const char* to : {"swapped.a", "above.a", "wrong.a", "good.a"}) {
+    spec.connections.push_back(Wire("source.value", to));
+  }
+  EXPECT_THAT(FaultsOf(spec), ElementsAre("swapped.low: is 7; it must be at most high, which is 5",
+                                          "above.low: is 11; it must be at most high, which is 10",
+                                          "wrong.high: high must be -100 to 100, not 101"));
+}
+
 TEST(CheckSequence, NamesInputsThatNeedAConnection) {
   SequenceSpec spec = ChainSpec("line", {"one"});
   spec.connections.clear();

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <map>
 #include <thread>
 #include <vector>
@@ -95,6 +96,51 @@ TEST_F(LiveParametersTest, ChangesNothingWhenOneValueOfABatchIsWrong) {
             StatusCode::kFailedPrecondition);
   run->Stop();
   EXPECT_EQ(run->SetParameters(Pair(1)).error().message(), "sequence pair is not running any more");
+}
+
+SequenceSpec LimitsSpec() {
+  SequenceSpec spec = ChainSpec("limits", {"step"});
+  spec.blocks.push_back({"limits", "TestLimits", {{"probe", std::string("limits")}}});
+  spec.connections.push_back(Wire("step.sum", "limits.a"));
+  return spec;
+}
+
+TEST_F(LiveParametersTest, RefusesValuesThatDoNotGoTogetherAndChangesNothing) {
+  MakeWorkers(1);
+  ProbeOf("source").ready = [] { return false; };
+  const auto run = Start(LimitsSpec());
+  const auto before = run->Parameters();
+  const auto refused =
+      run->SetParameters({{"limits", "low", 11.0}, {"step", "offset", int64_t{1}}});
+  EXPECT_EQ(refused.error().code(), StatusCode::kInvalidArgument);
+  EXPECT_THAT(refused.error().faults(),
+              ElementsAre(Fault{"limits.low", "is 11; it must be at most high, which is 10"}));
+  EXPECT_EQ(run->Parameters(), before);
+  EXPECT_EQ(run->Stats().parameter_revision, 0u);
+
+  EXPECT_TRUE(
+      run->SetParameters({{"limits", "low", 11.0}, {"limits", "high", int64_t{20}}}).has_value());
+  EXPECT_FALSE(run->SetParameters({{"limits", "high", 10.0}}).has_value())
+      << "low is 11 from now on, though no frame has seen it yet";
+}
+
+TEST_F(LiveParametersTest, TwoEditorsTogetherDoNotGetPastACheck) {
+  MakeWorkers(1);
+  ProbeOf("source").ready = [] { return false; };
+  const auto run = Start(LimitsSpec());
+  // Gives the other editor every chance to be checked against the same values.
+  std::atomic<int> checks = 0;
+  ProbeOf("limits").check = [&checks] {
+    ++checks;
+    for (int i = 0; i < 1000 && checks < 2; ++i) std::this_thread::yield();
+  };
+  // Each is fine with the initial value of the other limit, both together are not.
+  bool low_set = false;
+  std::thread other([&] { low_set = run->SetParameters({{"limits", "low", 8.0}}).has_value(); });
+  const bool high_set = run->SetParameters({{"limits", "high", 5.0}}).has_value();
+  other.join();
+  EXPECT_NE(low_set, high_set);
+  EXPECT_EQ(checks, 2);
 }
 
 TEST(LiveParameters, CountsAnIntegerForANumberAsThatNumber) {

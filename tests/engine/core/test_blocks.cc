@@ -2,6 +2,8 @@
 
 #include <map>
 
+#include "engine/base/str.h"
+
 namespace vs {
 namespace {
 
@@ -88,6 +90,21 @@ class TestNumber final : public ProbedBlock {
   }
 };
 
+class TestLimits final : public ProbedBlock {
+ public:
+  In<Value> a{this, "a", "Anything."};
+  Param<double> low{this, "low", {.initial = 0, .min = -100, .max = 100, .doc = "A limit."}};
+  Param<double> high{this, "high", {.initial = 10, .min = -100, .max = 100, .doc = "Another."}};
+
+  Status CheckParams() const override {
+    if (const Probe* hooks = Hooks(); hooks != nullptr && hooks->check) hooks->check();
+    if (*low <= *high) return Status();
+    return Status(StatusCode::kInvalidArgument, "limits are swapped",
+                  {{"low", Str("is ", *low, "; it must be at most high, which is ", *high)}});
+  }
+  Status Run() override { return Status(); }
+};
+
 class TestSome final : public ProbedBlock {
  public:
   In<Value> a{this, "a", "Anything.", Need::kSome};
@@ -103,6 +120,7 @@ class TestSome final : public ProbedBlock {
 VS_REGISTER_BLOCK(TestSource, {.category = "Test", .doc = "Counts."});
 VS_REGISTER_BLOCK(TestStep, {.category = "Test", .doc = "Adds."});
 VS_REGISTER_BLOCK(TestNumber, {.category = "Test", .doc = "Halves."});
+VS_REGISTER_BLOCK(TestLimits, {.category = "Test", .doc = "Has limits."});
 VS_REGISTER_BLOCK(TestSome, {.category = "Test", .doc = "Counts values."});
 
 }  // namespace

@@ -26,6 +26,7 @@ struct Probe {
   std::function<bool()> ready;                // of a TestSource
   std::function<Status(const StepRun&)> run;  // a = the count, for a TestSource
   std::function<void()> stop;
+  std::function<void()> check;                           // of a TestLimits, in CheckParams()
   std::function<void(std::function<void()>)> take_wake;  // gets the source's Wake() at its start
 };
 
@@ -38,6 +39,7 @@ void ClearProbes();
 //   TestSource  -> value                     counts 1, 2, 3 ...
 //   TestStep    a, b (optional) -> sum       a + b + offset; parameters offset, fixed (not live)
 //   TestNumber  in (number) -> out (number)
+//   TestLimits  a (any)                      parameters low <= high, initially 0 and 10
 //   TestSome    a, b (any, one of them) -> count of values
 BlockSpec SourceSpec(const std::string& id);
 // With "probe" = id.

@@ -268,6 +268,41 @@ TEST_F(SequenceApi, ParametersAreGuardedByRangeAndRole) {
   EXPECT_TRUE(Set(operator_, "count", "check.max", limit, &answer).ok());
 }
 
+TEST_F(SequenceApi, ValuesThatDoNotGoTogetherAreRefusedAtTheDoor) {
+  const auto limit = [](double value) {
+    pb::Value result;
+    result.set_double_value(value);
+    return result;
+  };
+  SequenceSpec swapped = CountSpec();
+  swapped.blocks[3].params = {{"min", 3.0}, {"max", 2.0}};
+  const grpc::Status refused = TryCreate(swapped);
+  EXPECT_THAT(refused.error_message(), HasSubstr("check: min (3) must not be above max (2)"));
+  EXPECT_THAT(SubjectsOf(refused), UnorderedElementsAre("check"));
+  EXPECT_EQ(0, Stored());
+
+  Create(CountSpec());
+  pb::SetParametersResponse answer;
+  for (const bool running : {false, true}) {
+    if (running) {
+      ASSERT_TRUE(Start("count").ok());
+    }
+    const grpc::Status set = Set(operator_, "count", "check.max", limit(-1), &answer);
+    EXPECT_EQ(grpc::StatusCode::INVALID_ARGUMENT, set.error_code());
+    EXPECT_THAT(set.error_message(), HasSubstr("min (0) must not be above max (-1)"));
+    EXPECT_THAT(SubjectsOf(set), UnorderedElementsAre("check"));
+  }
+  ASSERT_TRUE(Set(operator_, "count", "check.min", limit(2), &answer).ok());
+  EXPECT_EQ(2u, answer.revision()) << "the refused ones left none";
+  pb::ResetParametersRequest reset;
+  reset.set_sequence("count");
+  reset.add_paths("check.max");  // to 1, below min
+  pb::SetParametersResponse unused;
+  EXPECT_EQ(
+      grpc::StatusCode::INVALID_ARGUMENT,
+      parameters_->ResetParameters(ClientCall(operator_).context(), reset, &unused).error_code());
+}
+
 TEST_F(SequenceApi, WatchersSeeParametersAndStatesChange) {
   Create(CountSpec());
   ClientCall parameters_call(operator_);
