@@ -14,7 +14,7 @@ namespace vs {
 struct BlockSpec {
   std::string id;    // stable within the sequence: [a-z][a-z0-9_]*, at most 63 characters
   std::string type;  // name in the registry
-  std::map<std::string, ParamValue> params;  // those that differ from the initial value
+  std::map<std::string, ParamValue> params;  // the others have their initial values
   double x = 0;                              // place in the editor
   double y = 0;
 
@@ -50,8 +50,9 @@ bool IsSequenceId(std::string_view text);
 Status CheckSequenceId(const std::string& text);
 
 // Canonical JSON: keys sorted, blocks and connections sorted, two spaces, numbers in their shortest
-// exact form. Equal sequences give equal text, so a diff shows what changed. Numbers must be finite
-// (CheckSequence says whether they are).
+// exact form. Equal specs give equal text whatever the order of their blocks and connections, so a
+// diff shows what changed; NormalizeParameters makes specs equal that only mean the same. Numbers
+// must be finite (CheckSequence says whether they are).
 std::string ToJson(const SequenceSpec& spec);
 
 inline constexpr size_t kMaxSequenceBytes = 1 << 20;

@@ -4,6 +4,7 @@
 
 #include "engine/base/log.h"
 #include "engine/base/str.h"
+#include "engine/core/normalize_parameters.h"
 #include "server/storage/atomic_file.h"
 
 namespace vs {
@@ -118,6 +119,7 @@ Status SequenceStore::Delete(const std::string& id, const std::string& etag) {
 }
 
 Status SequenceStore::Write(StoredSequence* stored) {
+  NormalizeParameters(&stored->spec);
   stored->etag = EtagOf(*stored);
   const std::string text = FormatSequenceFile(*stored);
   if (text.size() > kMaxSequenceBytes) {

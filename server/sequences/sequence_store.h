@@ -15,8 +15,9 @@
 namespace vs {
 
 // The stored sequences: one file ID.json for each, all of them in memory. A change is on the disk
-// when the call returns, and two people who change the same revision cannot both succeed.
-// Thread-safe; changes wait for the disk, reading does not.
+// when the call returns, its parameters in one form (NormalizeParameters), and two people who
+// change the same revision cannot both succeed. Thread-safe; changes wait for the disk, reading
+// does not.
 class SequenceStore {
  public:
   // Makes the folder if necessary. A file that cannot be understood is put aside (see PutAside)

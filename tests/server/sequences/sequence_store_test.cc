@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "server/storage/atomic_file.h"
+#include "tests/engine/core/test_blocks.h"
 #include "tests/support/temp_folder.h"
 
 namespace vs {
@@ -103,6 +104,21 @@ TEST_F(SequenceStoreTest, EachChangeIsANewRevisionWithANewEtag) {
   EXPECT_EQ("ben", second.updated_by);
   EXPECT_NE(first.etag, second.etag);
   EXPECT_EQ("two", store->Get("gap").value().spec.description);
+}
+
+TEST_F(SequenceStoreTest, WhatMeansTheSameHasTheSameEtag) {
+  auto store = Open();
+  SequenceSpec spec = ChainSpec("gap", {"step"});
+  spec.blocks.push_back({"limits", "TestLimits", {{"low", 5.0}}});
+  const std::string etag = store->Create(spec, false, "anna").value().etag;
+  ASSERT_TRUE(store->Delete("gap", etag).ok());
+  SequenceSpec wordy = spec;
+  wordy.blocks[1].params["offset"] = int64_t{0};
+  wordy.blocks[2].params = {{"low", int64_t{5}}, {"high", 10.0}};
+  const StoredSequence stored = store->Create(wordy, false, "anna").value();
+  EXPECT_EQ(etag, stored.etag);
+  EXPECT_EQ(spec, stored.spec);
+  EXPECT_EQ(stored.etag, Open()->Get("gap").value().etag);
 }
 
 TEST_F(SequenceStoreTest, OfTwoEditorsOfOneRevisionOneIsTurnedAway) {
