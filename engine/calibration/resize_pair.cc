@@ -4,15 +4,14 @@
 #include <memory>
 #include <utility>
 
-#include <opencv2/imgproc.hpp>
-
 #include "engine/base/str.h"
-#include "engine/image/opencv_view.h"
+#include "engine/calibration/resample.h"
 
 namespace vs {
 namespace {
 
-Result<FramePtr> ResizeFrame(const FramePtr& frame, double scale, BufferPool& pool) {
+Result<FramePtr> ResizeFrame(const FramePtr& frame, double scale, const Recycler<Frame>& frames,
+                             BufferPool& pool) {
   if (frame == nullptr) return InvalidArgument("resize: a picture of the pair is missing");
   const GreyImage& image = frame->image;
   const auto width = static_cast<int>(std::lround(image.width() * scale));
@@ -22,22 +21,21 @@ Result<FramePtr> ResizeFrame(const FramePtr& frame, double scale, BufferPool& po
                                scale, " is ", width, " x ", height,
                                " px; the result must be 16 x 16 to 16384 x 16384 px"));
   }
-  auto resized = std::make_shared<Frame>(*frame);
-  resized->image = GreyImage(pool, width, height);
-  cv::resize(CvView(image), CvView(resized->image), cv::Size(width, height), 0, 0,
-             scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+  auto resized = std::allocate_shared<Frame>(frames, *frame);
+  resized->image = Resample(image, width, height, pool);
   return FramePtr(std::move(resized));
 }
 
 }  // namespace
 
-Result<StereoFrame> ResizePair(const StereoFrame& pair, double scale, BufferPool& pool) {
+Result<StereoFrame> ResizePair(const StereoFrame& pair, double scale, const Recycler<Frame>& frames,
+                               BufferPool& pool) {
   if (!(scale >= 0.05 && scale <= 4)) {
     return InvalidArgument(Str("resize: the scale is ", scale, "; it must be 0.05 .. 4"));
   }
   StereoFrame resized = pair;
-  VS_ASSIGN_OR_RETURN(resized.left, ResizeFrame(pair.left, scale, pool));
-  VS_ASSIGN_OR_RETURN(resized.right, ResizeFrame(pair.right, scale, pool));
+  VS_ASSIGN_OR_RETURN(resized.left, ResizeFrame(pair.left, scale, frames, pool));
+  VS_ASSIGN_OR_RETURN(resized.right, ResizeFrame(pair.right, scale, frames, pool));
   if (pair.geometry) {
     resized.geometry =
         Scaled(*pair.geometry, resized.left->image.width(), resized.left->image.height());

@@ -18,10 +18,13 @@ class Resize final : public Block {
                               "binning does."}};
 
   Status Run() override {
-    VS_ASSIGN_OR_RETURN(StereoFrame result, ResizePair(*pair, *scale, pool()));
+    VS_ASSIGN_OR_RETURN(StereoFrame result, ResizePair(*pair, *scale, frames_, pool()));
     resized.Set(std::move(result));
     return {};
   }
+
+ private:
+  Recycler<Frame> frames_;
 };
 
 VS_REGISTER_BLOCK(Resize,

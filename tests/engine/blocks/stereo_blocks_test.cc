@@ -242,6 +242,7 @@ TEST_F(RectifyBlock, FollowsItsParametersLive) {
 // From the second frame on, the chain lives on what it has.
 TEST_F(RectifyBlock, TheWarmChainTakesNoMemory) {
   ASSERT_TRUE(block_.Set("rig_file", std::string("demo.json")).ok());
+  BlockHarness resize("Resize");
   BlockHarness match("SgmStereo");
   BlockHarness speckle("SpeckleFilter");
   BlockHarness depth("DisparityToDepth");
@@ -251,7 +252,9 @@ TEST_F(RectifyBlock, TheWarmChainTakesNoMemory) {
   ASSERT_TRUE(match.Start().ok());
   const auto run = [&] {
     ASSERT_TRUE(block_.Run().ok());
-    match.Input("pair", block_.Output("rectified"));
+    resize.Input("pair", block_.Output("rectified"));
+    ASSERT_TRUE(resize.Run().ok());
+    match.Input("pair", resize.Output("resized"));
     ASSERT_TRUE(match.Run().ok());
     speckle.Input("disparity", match.Output("disparity"));
     ASSERT_TRUE(speckle.Run().ok());

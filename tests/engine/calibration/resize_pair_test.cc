@@ -23,11 +23,12 @@ class ResizePairTest : public testing::Test {
     pair_.truth = std::make_shared<StereoTruth>();
   }
   BufferPool pool_;
+  Recycler<Frame> frames_;
   StereoFrame pair_;
 };
 
 TEST_F(ResizePairTest, HalvingAveragesTwoByTwoPixelsAndScalesTheGeometry) {
-  const auto half = ResizePair(pair_, 0.5, pool_);
+  const auto half = ResizePair(pair_, 0.5, frames_, pool_);
   ASSERT_TRUE(half.has_value());
   EXPECT_EQ(half->left->image.width(), 32);
   EXPECT_EQ(half->left->image.height(), 24);
@@ -39,11 +40,11 @@ TEST_F(ResizePairTest, HalvingAveragesTwoByTwoPixelsAndScalesTheGeometry) {
 }
 
 TEST_F(ResizePairTest, RefusesImpossibleSizes) {
-  EXPECT_FALSE(ResizePair(pair_, 0.2, pool_).has_value()) << "13 x 10 px";
-  EXPECT_FALSE(ResizePair(pair_, 0, pool_).has_value());
-  EXPECT_FALSE(ResizePair(pair_, 5, pool_).has_value());
+  EXPECT_FALSE(ResizePair(pair_, 0.2, frames_, pool_).has_value()) << "13 x 10 px";
+  EXPECT_FALSE(ResizePair(pair_, 0, frames_, pool_).has_value());
+  EXPECT_FALSE(ResizePair(pair_, 5, frames_, pool_).has_value());
   pair_.right = nullptr;
-  EXPECT_EQ(ResizePair(pair_, 0.5, pool_).error().code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(ResizePair(pair_, 0.5, frames_, pool_).error().code(), StatusCode::kInvalidArgument);
 }
 
 }  // namespace
