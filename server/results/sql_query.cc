@@ -129,7 +129,7 @@ struct SqlQuery::Watch {
   const SqlLimits& limits;
   const std::function<bool()>& cancelled;
   int64_t end_ns;
-  int64_t memory_before = 0;
+  int64_t memory_before = INT64_MAX;  // what others use while it waits for its turn does not count
   Status stopped_because{};
 
   // Not zero: SQLite interrupts the statement.
@@ -178,27 +178,45 @@ SqlQuery::SqlQuery(Database database, const Clock& clock)
 
 SqlQuery::~SqlQuery() = default;
 
+// The connection is ours until this goes, however the statement ends; an exception, too.
+class SqlQuery::Turn {
+ public:
+  // `query` is busy on our behalf. `watch` outlives this.
+  Turn(SqlQuery& query, Watch& watch) : query_(query) {
+    watch.memory_before = sqlite3_memory_used();
+    sqlite3_progress_handler(query_.database_.handle(), kStepsBetweenChecks, &Watch::Look, &watch);
+  }
+  ~Turn() {
+    sqlite3_progress_handler(query_.database_.handle(), 0, nullptr, nullptr);
+    {
+      MutexLock lock(query_.mutex_);
+      query_.busy_ = false;
+    }
+    query_.free_.NotifyOne();
+  }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  SqlQuery& query_;
+};
+
 Result<SqlTable> SqlQuery::Run(const std::string& sql, const std::vector<SqlValue>& arguments,
                                const SqlLimits& limits, const std::function<bool()>& cancelled) {
+  const int64_t since_ns = limits.since_ns.value_or(clock_.MonotonicNs());
   Watch watch{clock_, limits, cancelled,
-              clock_.MonotonicNs() + std::chrono::nanoseconds(limits.timeout).count()};
+              since_ns + std::chrono::nanoseconds(limits.timeout).count()};
   {
     MutexLock lock(mutex_);
+    VS_RETURN_IF_ERROR(watch.Judge());
     while (busy_) {
-      VS_RETURN_IF_ERROR(watch.Judge());
       free_.WaitFor(mutex_, std::chrono::milliseconds(20));
+      VS_RETURN_IF_ERROR(watch.Judge());
     }
     busy_ = true;
   }
-  watch.memory_before = sqlite3_memory_used();
-  sqlite3_progress_handler(database_.handle(), kStepsBetweenChecks, &Watch::Look, &watch);
+  const Turn turn(*this, watch);
   Result<SqlTable> table = Read(sql, arguments, limits);
-  sqlite3_progress_handler(database_.handle(), 0, nullptr, nullptr);
-  {
-    MutexLock lock(mutex_);
-    busy_ = false;
-  }
-  free_.NotifyOne();
   if (!watch.stopped_because.ok()) return watch.stopped_because;
   return table;
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -33,6 +34,7 @@ struct SqlTable {
 struct SqlLimits {
   size_t max_rows = 1000;
   std::chrono::milliseconds timeout{5000};
+  std::optional<int64_t> since_ns;     // monotonic, when the timeout began; absent: at the call
   size_t max_answer_bytes = 3u << 20;  // below what gRPC clients accept unless told otherwise
   size_t max_work_bytes = 64u << 20;   // memory for sorting and grouping
 };
@@ -56,6 +58,7 @@ class SqlQuery {
 
  private:
   struct Watch;
+  class Turn;
 
   SqlQuery(Database database, const Clock& clock);
 

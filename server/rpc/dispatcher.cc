@@ -14,6 +14,8 @@ Dispatcher::Dispatcher(const Router& router, Gatekeeper& gatekeeper,
       options_(options),
       quick_(options.quick_threads, options.quick_queue),
       slow_(options.slow_threads, options.slow_queue),
+      list_(1, options.list_queue),
+      query_(1, options.query_queue),
       password_(1, options.password_queue),
       // Each open stream queues at most twice, and their number is bounded.
       stream_(options.stream_threads, std::numeric_limits<size_t>::max()) {
@@ -23,7 +25,8 @@ Dispatcher::Dispatcher(const Router& router, Gatekeeper& gatekeeper,
 
 Dispatcher::~Dispatcher() {
   // Their tasks may still post to each other, so all of them stop before any of them goes.
-  for (Executor* executor : {&quick_, &slow_, &password_, &stream_}) executor->Stop();
+  for (Executor* executor : {&quick_, &slow_, &list_, &query_, &password_, &stream_})
+    executor->Stop();
 }
 
 std::shared_ptr<ServerCall> Dispatcher::Begin(const std::string& method,
@@ -76,6 +79,10 @@ Executor& Dispatcher::executor(Lane lane) {
   switch (lane) {
     case Lane::kSlow:
       return slow_;
+    case Lane::kList:
+      return list_;
+    case Lane::kQuery:
+      return query_;
     case Lane::kPassword:
       return password_;
     case Lane::kInline:

@@ -22,6 +22,8 @@ struct DispatcherOptions {
   size_t quick_queue = 256;
   int slow_threads = 4;
   size_t slow_queue = 64;
+  size_t list_queue = 64;
+  size_t query_queue = 16;
   // Each hash takes 64 MiB and a fifth of a second: one at a time, and few may wait.
   size_t password_queue = 16;
   int stream_threads = 2;
@@ -93,6 +95,8 @@ class Dispatcher {
 
   Executor quick_;
   Executor slow_;
+  Executor list_;
+  Executor query_;
   Executor password_;
   Executor stream_;
   Timer timer_;  // last: it goes first and posts to the others

@@ -20,7 +20,9 @@ namespace vs {
 enum class Lane {
   kInline,    // on the network's own thread: must not wait for anything, microseconds only
   kQuick,     // milliseconds: memory and small files
-  kSlow,      // anything that waits for a camera, the network or a large query
+  kSlow,      // anything that waits for a camera or for blocks to start and stop
+  kList,      // a page of what is stored on the disk
+  kQuery,     // a client's own SQL, which takes as long as it pleases: one at a time
   kPassword,  // password hashing: one at a time
 };
 

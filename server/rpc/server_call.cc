@@ -75,7 +75,7 @@ void ServerCall::OnRequest(std::optional<std::string> bytes) {
     MutexLock lock(mutex_);
     if (phase_ != Phase::kReceiving) return;
     phase_ = Phase::kWorking;
-    begun_ns_ = dispatcher_.clock_.MonotonicNs();
+    call_.arrived_ns = dispatcher_.clock_.MonotonicNs();
   }
   if (!bytes) {
     FinishWith(method_->client_streaming ? Status()
@@ -291,8 +291,9 @@ void ServerCall::FinishWith(const Status& status) {
 void ServerCall::Close(const Status& status, std::optional<WireMessage> last_message) {
   phase_ = Phase::kDone;
   const bool streaming = method_ != nullptr && method_->server_streaming;
-  dispatcher_.Finished(*this, status, streaming,
-                       begun_ns_ == 0 ? 0 : dispatcher_.clock_.MonotonicNs() - begun_ns_);
+  dispatcher_.Finished(
+      *this, status, streaming,
+      call_.arrived_ns == 0 ? 0 : dispatcher_.clock_.MonotonicNs() - call_.arrived_ns);
   Channel* channel = std::exchange(channel_, nullptr);
   if (last_message) {
     channel->SendAndFinish(std::move(*last_message));

@@ -91,7 +91,6 @@ class ServerCall : public std::enable_shared_from_this<ServerCall> {
   Mutex mutex_;
   Channel* channel_ VS_GUARDED_BY(mutex_);
   Phase phase_ VS_GUARDED_BY(mutex_) = Phase::kReceiving;
-  int64_t begun_ns_ VS_GUARDED_BY(mutex_) = 0;          // the request has arrived
   std::optional<Status> ending_ VS_GUARDED_BY(mutex_);  // why it ends at the next chance
   int64_t ending_since_ns_ VS_GUARDED_BY(mutex_) = 0;
   int64_t sending_since_ns_ VS_GUARDED_BY(mutex_) = 0;

@@ -118,9 +118,10 @@ Result<std::unique_ptr<ResultService>> ResultService::Make(ResultStore& store, c
 
 void ResultService::Register(Router& router) {
   const std::string service = "/visionserver.v1.ResultService/";
-  router.Unary(service + "ListResults", this, &ResultService::ListResults, {.lane = Lane::kSlow});
+  router.Unary(service + "ListResults", this, &ResultService::ListResults, {.lane = Lane::kList});
   router.Unary(service + "GetResult", this, &ResultService::GetResult);
-  router.Unary(service + "QueryResults", this, &ResultService::QueryResults, {.lane = Lane::kSlow});
+  router.Unary(service + "QueryResults", this, &ResultService::QueryResults,
+               {.lane = Lane::kQuery});
   router.Stream(service + "ExportResults", this, &ResultService::ExportResults);
   router.Stream(service + "WatchResults", this, &ResultService::WatchResults);
 }
@@ -153,7 +154,8 @@ Result<pb::Result> ResultService::GetResult(const Call& /*call*/,
 
 Result<pb::QueryResultsResponse> ResultService::QueryResults(
     const Call& call, const pb::QueryResultsRequest& request) {
-  VS_ASSIGN_OR_RETURN(const SqlLimits limits, LimitsOf(request));
+  VS_ASSIGN_OR_RETURN(SqlLimits limits, LimitsOf(request));
+  limits.since_ns = call.arrived_ns;
   std::vector<SqlValue> arguments;
   for (const pb::Value& argument : request.arguments()) {
     VS_ASSIGN_OR_RETURN(arguments.emplace_back(), ToSqlValue(argument));

@@ -4,12 +4,30 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
 #include <string>
 #include <thread>
 
 #include "server/results/result_store.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/wait_until.h"
+
+namespace {
+
+// A larger allocation of this thread fails.
+thread_local size_t largest_allocation_bytes = SIZE_MAX;
+
+}  // namespace
+
+void* operator new(size_t size_bytes) {
+  void* memory = size_bytes > largest_allocation_bytes ? nullptr : std::malloc(size_bytes);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, size_t) noexcept { std::free(memory); }
 
 namespace vs {
 namespace {
@@ -154,6 +172,19 @@ TEST_F(SqlQueryTest, AnEndlessQueryEndsAtItsTimeout) {
   const auto answer = Run(kEndless, {}, {.timeout = std::chrono::milliseconds(50)});
   ASSERT_FALSE(answer.has_value());
   EXPECT_EQ(StatusCode::kDeadlineExceeded, answer.error().code());
+  EXPECT_TRUE(Run("SELECT 1").has_value());
+}
+
+TEST_F(SqlQueryTest, TheTimeoutCountsFromWhenTheQueryArrived) {
+  const SqlLimits limits{.timeout = std::chrono::seconds(5),
+                         .since_ns = clock_.MonotonicNs() - 5'000'000'000};
+  EXPECT_EQ(StatusCode::kDeadlineExceeded, Run("SELECT 1", {}, limits).error().code());
+}
+
+TEST_F(SqlQueryTest, AQueryThatRunsOutOfMemoryLeavesTheTurnToTheNext) {
+  largest_allocation_bytes = 500'000;
+  EXPECT_THROW((void)Run("SELECT hex(zeroblob(400000))"), std::bad_alloc);
+  largest_allocation_bytes = SIZE_MAX;
   EXPECT_TRUE(Run("SELECT 1").has_value());
 }
 

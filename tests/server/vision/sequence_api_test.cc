@@ -16,6 +16,7 @@
 #include "server/rpc/error_details.h"
 #include "tests/engine/core/test_blocks.h"
 #include "tests/server/vision/vision_fixture.h"
+#include "tests/support/raw_call.h"
 #include "tests/support/wait_until.h"
 
 namespace vs::test {
@@ -423,6 +424,31 @@ TEST_F(SequenceApi, WhatASequenceLogsIsWatchedListedQueriedAndExported) {
   EXPECT_TRUE(pieces->Finish().ok());
   EXPECT_THAT(csv, HasSubstr(",reason,sum\r\n1,"));
   EXPECT_THAT(csv, HasSubstr(result.result_id()));
+}
+
+TEST_F(SequenceApi, EndlessQueriesKeepNobodyElseWaiting) {
+  Create(CountSpec());
+  ASSERT_TRUE(Start("count").ok());
+  // More than there are threads for anything.
+  const std::string viewer = server_.Token(Role::kViewer);
+  pb::QueryResultsRequest endless;
+  endless.set_sql(
+      "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT count(*) FROM n");
+  endless.mutable_timeout()->set_seconds(30);
+  std::vector<std::unique_ptr<RawCall>> queries;
+  for (int i = 0; i < 12; ++i) {
+    queries.push_back(
+        std::make_unique<RawCall>(channel_, "/visionserver.v1.ResultService/QueryResults", viewer));
+    ASSERT_TRUE(queries.back()->Send(endless.SerializeAsString()));
+  }
+  EXPECT_TRUE(Stop("count").ok());
+  pb::ListResultsResponse page;
+  EXPECT_TRUE(
+      results_->ListResults(ClientCall(operator_).context(), pb::ListResultsRequest(), &page).ok());
+  // All of them are still under way.
+  for (const MethodStats& stats : server_->dispatcher().Statistics()) {
+    EXPECT_NE("/visionserver.v1.ResultService/QueryResults", stats.method);
+  }
 }
 
 TEST_F(SequenceFault, AFailingSequenceIsUnhealthyAndRaisesAnAlarm) {
