@@ -13,7 +13,7 @@
 namespace vs {
 namespace {
 
-constexpr std::array<std::string_view, 1> kMigrations = {R"sql(
+constexpr std::array<std::string_view, 2> kMigrations = {R"sql(
   CREATE TABLE users(
     name TEXT PRIMARY KEY, full_name TEXT NOT NULL, role INTEGER NOT NULL,
     password_hash TEXT NOT NULL, disabled INTEGER NOT NULL, must_change_password INTEGER NOT NULL,
@@ -28,6 +28,10 @@ constexpr std::array<std::string_view, 1> kMigrations = {R"sql(
     id TEXT PRIMARY KEY, token_hash TEXT NOT NULL UNIQUE, user TEXT NOT NULL,
     address TEXT NOT NULL, client TEXT NOT NULL, created_utc_ns INTEGER NOT NULL,
     expires_utc_ns INTEGER NOT NULL) STRICT;
+)sql",
+                                                         R"sql(
+  ALTER TABLE sessions ADD COLUMN last_used_utc_ns INTEGER NOT NULL DEFAULT 0;
+  UPDATE sessions SET last_used_utc_ns = created_utc_ns;
 )sql"};
 
 // SQLite would make the file with the rights that the process's umask leaves.
@@ -106,7 +110,8 @@ Result<std::vector<SessionRecord>> AccessDatabase::Sessions() {
   MutexLock lock(mutex_);
   return ReadAll<SessionRecord>(
       database_,
-      "SELECT id, token_hash, user, address, client, created_utc_ns, expires_utc_ns FROM sessions",
+      "SELECT id, token_hash, user, address, client, created_utc_ns, expires_utc_ns,"
+      " last_used_utc_ns FROM sessions",
       [](const Statement& row) {
         return SessionRecord{.id = row.Text(0),
                              .token_hash = TokenHashFromHex(row.Text(1)),
@@ -114,7 +119,8 @@ Result<std::vector<SessionRecord>> AccessDatabase::Sessions() {
                              .address = row.Text(3),
                              .client = row.Text(4),
                              .created_utc_ns = row.Integer(5),
-                             .expires_utc_ns = row.Integer(6)};
+                             .expires_utc_ns = row.Integer(6),
+                             .last_used_utc_ns = row.Integer(7)};
       });
 }
 
@@ -160,8 +166,8 @@ Status AccessDatabase::Save(const SessionRecord& session) {
   MutexLock lock(mutex_);
   VS_ASSIGN_OR_RETURN(Statement statement,
                       database_.Prepare("INSERT OR REPLACE INTO sessions(id, token_hash, user,"
-                                        " address, client, created_utc_ns, expires_utc_ns)"
-                                        " VALUES(?, ?, ?, ?, ?, ?, ?)"));
+                                        " address, client, created_utc_ns, expires_utc_ns,"
+                                        " last_used_utc_ns) VALUES(?, ?, ?, ?, ?, ?, ?, ?)"));
   statement.Bind(1, session.id);
   statement.Bind(2, ToHex(session.token_hash));
   statement.Bind(3, session.user);
@@ -169,7 +175,22 @@ Status AccessDatabase::Save(const SessionRecord& session) {
   statement.Bind(5, session.client);
   statement.Bind(6, session.created_utc_ns);
   statement.Bind(7, session.expires_utc_ns);
+  statement.Bind(8, session.last_used_utc_ns);
   return statement.Run();
+}
+
+Status AccessDatabase::SaveLastUse(const std::vector<SessionRecord>& sessions) {
+  MutexLock lock(mutex_);
+  VS_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(database_));
+  VS_ASSIGN_OR_RETURN(Statement statement,
+                      database_.Prepare("UPDATE sessions SET last_used_utc_ns = ? WHERE id = ?"));
+  for (const SessionRecord& session : sessions) {
+    statement.Bind(1, session.last_used_utc_ns);
+    statement.Bind(2, session.id);
+    VS_RETURN_IF_ERROR(statement.Run());
+    statement.Reset();
+  }
+  return transaction.Commit();
 }
 
 Status AccessDatabase::DeleteUser(const std::string& name) {

@@ -50,6 +50,7 @@ struct SessionRecord {
   std::string client;
   int64_t created_utc_ns = 0;
   int64_t expires_utc_ns = 0;
+  int64_t last_used_utc_ns = 0;  // as last stored
 };
 
 // The file of users, keys and login sessions. Survives power cuts; holds no password and no token,
@@ -67,6 +68,8 @@ class AccessDatabase {
   Status Save(const UserRecord& user);
   Status Save(const ApiKeyRecord& key);
   Status Save(const SessionRecord& session);
+  // Stores last_used_utc_ns of those sessions that are there.
+  Status SaveLastUse(const std::vector<SessionRecord>& sessions);
   // Together with the user's sessions.
   Status DeleteUser(const std::string& name);
   Status DeleteApiKey(const std::string& id);

@@ -15,6 +15,12 @@ Result<std::unique_ptr<Sessions>> Sessions::Open(AccessDatabase& database, const
   return sessions;
 }
 
+Sessions::~Sessions() {
+  if (const Status stored = StoreLastUse(); !stored.ok()) {
+    LogWarn("access", Str("the last use of sessions is not stored: ", stored.message()));
+  }
+}
+
 Status Sessions::Load() {
   VS_ASSIGN_OR_RETURN(const std::vector<SessionRecord> stored, database_.Sessions());
   const int64_t now_ns = clock_.MonotonicNs();
@@ -25,11 +31,15 @@ Status Sessions::Load() {
     for (const SessionRecord& record : stored) {
       // The wall clock may have been set meanwhile: never give more than a whole life.
       const int64_t left_ns = std::min(record.expires_utc_ns - now_utc_ns, limits_.lifetime_ns);
-      if (left_ns <= 0) {
-        ended.push_back(record.id);
+      const int64_t unused_ns = std::max(now_utc_ns - record.last_used_utc_ns, int64_t{0});
+      const Entry entry{.record = record,
+                        .expires_ns = now_ns + left_ns,
+                        .last_used_ns = now_ns - unused_ns,
+                        .stored_use_ns = now_ns - unused_ns};
+      if (Alive(entry, now_ns)) {
+        sessions_[record.token_hash] = entry;
       } else {
-        sessions_[record.token_hash] = {
-            .record = record, .expires_ns = now_ns + left_ns, .last_used_ns = now_ns};
+        ended.push_back(record.id);
       }
     }
   }
@@ -74,22 +84,27 @@ Result<Sessions::Created> Sessions::Create(const std::string& user, const std::s
                     .address = address,
                     .client = client,
                     .created_utc_ns = clock_.UtcNs(),
-                    .expires_utc_ns = clock_.UtcNs() + limits_.lifetime_ns};
+                    .expires_utc_ns = clock_.UtcNs() + limits_.lifetime_ns,
+                    .last_used_utc_ns = clock_.UtcNs()};
   std::vector<std::string> removed;
+  bool full = false;
   {
     MutexLock lock(mutex_);
     removed = MakeRoomFor(user);
-    if (sessions_.size() >= limits_.total) {
-      return ResourceExhausted(Str("the server has ", limits_.total,
-                                   " login sessions, which is its limit; log out somewhere"));
-    }
+    full = sessions_.size() >= limits_.total;
   }
   VS_RETURN_IF_ERROR(DeleteAll(removed));
+  if (full) {
+    return ResourceExhausted(Str("the server has ", limits_.total,
+                                 " login sessions, which is its limit; log out somewhere"));
+  }
   VS_RETURN_IF_ERROR(database_.Save(created.record));
   MutexLock lock(mutex_);
   const int64_t now_ns = clock_.MonotonicNs();
-  sessions_[created.record.token_hash] = {
-      .record = created.record, .expires_ns = now_ns + limits_.lifetime_ns, .last_used_ns = now_ns};
+  sessions_[created.record.token_hash] = {.record = created.record,
+                                          .expires_ns = now_ns + limits_.lifetime_ns,
+                                          .last_used_ns = now_ns,
+                                          .stored_use_ns = now_ns};
   return created;
 }
 
@@ -139,6 +154,22 @@ Status Sessions::RemoveOf(const std::string& user, const std::string& except_id)
     });
   }
   return DeleteAll(removed);
+}
+
+Status Sessions::StoreLastUse() {
+  std::vector<SessionRecord> used;
+  {
+    MutexLock lock(mutex_);
+    const int64_t now_ns = clock_.MonotonicNs();
+    const int64_t now_utc_ns = clock_.UtcNs();
+    for (auto& [hash, entry] : sessions_) {
+      if (entry.last_used_ns == entry.stored_use_ns) continue;
+      entry.stored_use_ns = entry.last_used_ns;
+      used.push_back(entry.record);
+      used.back().last_used_utc_ns = now_utc_ns - (now_ns - entry.last_used_ns);
+    }
+  }
+  return used.empty() ? Status() : database_.SaveLastUse(used);
 }
 
 std::vector<SessionInfo> Sessions::List(const std::string& user) const {

@@ -35,6 +35,8 @@ class Sessions {
   // `database` and `clock` must outlive it.
   static Result<std::unique_ptr<Sessions>> Open(AccessDatabase& database, const Clock& clock,
                                                 const SessionLimits& limits);
+  // Stores the last uses.
+  ~Sessions();
 
   struct Created {
     std::string token;  // the secret, known to nobody else
@@ -55,6 +57,10 @@ class Sessions {
   // All of a user, except perhaps one.
   Status RemoveOf(const std::string& user, const std::string& except_id = "");
 
+  // Stores when each session was used last, for the next start of the server; to be called about
+  // once a minute. What it has not stored counts as unused.
+  Status StoreLastUse();
+
   // Newest first; `user` empty: everybody's.
   std::vector<SessionInfo> List(const std::string& user) const;
   size_t Count() const;
@@ -63,8 +69,9 @@ class Sessions {
  private:
   struct Entry {
     SessionRecord record;
-    int64_t expires_ns = 0;    // monotonic
-    int64_t last_used_ns = 0;  // monotonic
+    int64_t expires_ns = 0;     // monotonic
+    int64_t last_used_ns = 0;   // monotonic
+    int64_t stored_use_ns = 0;  // the last_used_ns that the disk knows
   };
   using Table = std::unordered_map<TokenHash, Entry, TokenHashHasher>;
 

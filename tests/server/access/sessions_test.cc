@@ -84,6 +84,33 @@ TEST_F(SessionsTest, DoesNotSurviveItsEndByARestart) {
   EXPECT_TRUE(database_->Sessions()->empty());
 }
 
+TEST_F(SessionsTest, DoesNotComeBackToLifeByARestart) {
+  const Sessions::Created session = Create("maria");
+  clock_.Advance(minutes(31));
+  Reopen();
+  EXPECT_FALSE(Valid(session));
+  EXPECT_TRUE(database_->Sessions()->empty());
+}
+
+TEST_F(SessionsTest, TimeWithoutUseGoesOnOverARestart) {
+  const Sessions::Created session = Create("maria");
+  clock_.Advance(minutes(20));
+  Reopen();
+  EXPECT_FALSE(sessions_->List("maria").empty());
+  clock_.Advance(minutes(10));
+  EXPECT_FALSE(Valid(session));
+}
+
+TEST_F(SessionsTest, KnowsItsLastUseAfterACrash) {
+  const Sessions::Created session = Create("maria");
+  clock_.Advance(minutes(20));
+  EXPECT_TRUE(Valid(session));
+  ASSERT_TRUE(sessions_->StoreLastUse().ok());
+  clock_.Advance(minutes(20));
+  const auto after_crash = *Sessions::Open(*database_, clock_, limits_);
+  EXPECT_TRUE(after_crash->Find(HashToken(session.token)).has_value());
+}
+
 TEST_F(SessionsTest, NeverLivesLongerThanALifeAfterARestartWithAWrongClock) {
   const Sessions::Created session = Create("maria");
   clock_.SetUtcBack(hours(24 * 365));
@@ -140,6 +167,17 @@ TEST_F(SessionsTest, RefusesMoreThanTheServerTakes) {
   EXPECT_EQ(sixth.error().code(), StatusCode::kResourceExhausted);
   clock_.Advance(minutes(31));
   EXPECT_TRUE(sessions_->Create("f", "10.0.0.1", "").has_value());
+}
+
+TEST_F(SessionsTest, WhatEndedIsGoneFromTheDiskEvenWhenTheServerIsFull) {
+  const Sessions::Created unused = Create("a");
+  clock_.Advance(minutes(20));
+  for (const char* user : {"b", "c", "d", "e"}) Create(user);
+  limits_.total = 4;
+  Reopen();
+  clock_.Advance(minutes(11));
+  EXPECT_FALSE(sessions_->Create("f", "10.0.0.1", "").has_value());
+  EXPECT_EQ(database_->Sessions()->size(), 4U);
 }
 
 TEST_F(SessionsTest, ListsTheNewestFirstWithTheLastUse) {
