@@ -39,6 +39,7 @@ struct ResultStream::State {
   ~State() {
     const std::lock_guard lock(mutex);
     stop = true;
+    if (beginning != nullptr) beginning->TryCancel();
     changed.notify_all();
   }
 
@@ -59,7 +60,12 @@ struct ResultStream::State {
       result = v1::Result();
       changed.notify_all();
     }
-    return reader->Finish();
+    grpc::Status status = reader->Finish();
+    if (status.error_code() == grpc::OUT_OF_RANGE && request.after_number() > 0) {
+      request.set_after_number(0);
+      return {grpc::UNAVAILABLE, "the server has begun its results anew"};
+    }
+    return status;
   }
 
   // Without a number to go on from, results that come while the connection is lost would be missed.
@@ -70,7 +76,16 @@ struct ResultStream::State {
     *newest.mutable_filter() = request.filter();
     newest.set_page_size(1);
     v1::ListResultsResponse response;
+    {
+      const std::lock_guard lock(mutex);
+      if (stop) return grpc::Status::CANCELLED;
+      beginning = &context;
+    }
     grpc::Status status = stub.ListResults(&context, newest, &response);
+    {
+      const std::lock_guard lock(mutex);
+      beginning = nullptr;
+    }
     if (status.ok()) {
       request.set_after_number(response.results().empty() ? 0 : response.results(0).number());
     }
@@ -92,7 +107,8 @@ struct ResultStream::State {
   std::optional<Error> refused;
   std::string waits_for;
   bool stop = false;
-  StreamThread thread;  // the last: it uses all the others
+  grpc::ClientContext* beginning = nullptr;  // the call of BeginAtNewest, to be cancelled
+  StreamThread thread;                       // the last: it uses all the others
 };
 
 ResultStream::ResultStream(std::shared_ptr<Connection> connection, v1::ResultFilter filter,

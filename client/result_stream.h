@@ -14,8 +14,9 @@ namespace vs::client {
 class Connection;
 
 // Every new result, in the order of storing, none left out: after a lost connection it goes on
-// where it was. A thread of its own receives; when nobody takes, it stops receiving and the server
-// keeps the results. One thread at a time may call Next.
+// where it was, and with the first result of a server that has begun its results anew. A thread of
+// its own receives; when nobody takes, it stops receiving and the server keeps the results. One
+// thread at a time may call Next.
 class ResultStream {
  public:
   // Only what `filter` lets through. `after_number`: first those stored after this Result.number;

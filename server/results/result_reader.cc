@@ -56,10 +56,10 @@ class Where {
     if (filter.until_ns) Add("creation_time_ns < ?", *filter.until_ns);
   }
 
-  Result<std::vector<StoredResult>> Select(Database& database, std::string_view order,
-                                           size_t limit) const {
+  Result<ResultPage> Select(Database& database, std::string_view order, size_t limit) const {
+    // One more tells whether there are others.
     VS_ASSIGN_OR_RETURN(Statement query, database.Prepare(Str(kSelect, text_, " ORDER BY number ",
-                                                              order, " LIMIT ", limit)));
+                                                              order, " LIMIT ", limit + 1)));
     for (size_t i = 0; i < values_.size(); ++i) {
       const int parameter = static_cast<int>(i) + 1;
       if (const auto* text = std::get_if<std::string>(&values_[i])) {
@@ -68,11 +68,15 @@ class Where {
         query.Bind(parameter, std::get<int64_t>(values_[i]));
       }
     }
-    std::vector<StoredResult> results;
+    ResultPage page;
+    size_t bytes = 0;
     while (true) {
       VS_ASSIGN_OR_RETURN(const bool row, query.Step());
-      if (!row) return results;
-      results.push_back(ReadRow(query));
+      if (!row) return page;
+      page.more = page.results.size() == limit || bytes >= ResultReader::kMaxPageBytes;
+      if (page.more) return page;
+      page.results.push_back(ReadRow(query));
+      bytes += SizeBytes(page.results.back());
     }
   }
 
@@ -95,16 +99,15 @@ Result<StoredResult> ResultReader::Get(const std::string& result_id) {
   Where where;
   where.Add("result_id = ?", result_id);
   MutexLock lock(mutex_);
-  VS_ASSIGN_OR_RETURN(std::vector<StoredResult> found, where.Select(database_, "DESC", 1));
-  if (found.empty()) {
+  VS_ASSIGN_OR_RETURN(ResultPage found, where.Select(database_, "DESC", 1));
+  if (found.results.empty()) {
     return NotFound(Str("there is no result \"", result_id.substr(0, 64), "\""));
   }
-  return std::move(found.front());
+  return std::move(found.results.front());
 }
 
-Result<std::vector<StoredResult>> ResultReader::Before(const ResultFilter& filter,
-                                                       std::optional<uint64_t> before,
-                                                       size_t limit) {
+Result<ResultPage> ResultReader::Before(const ResultFilter& filter, std::optional<uint64_t> before,
+                                        size_t limit) {
   Where where;
   where.Add("number < ?", before ? static_cast<int64_t>(*before) : INT64_MAX);
   where.Add(filter);
@@ -112,8 +115,8 @@ Result<std::vector<StoredResult>> ResultReader::Before(const ResultFilter& filte
   return where.Select(database_, "DESC", limit);
 }
 
-Result<std::vector<StoredResult>> ResultReader::After(const ResultFilter& filter, uint64_t after,
-                                                      uint64_t last, size_t limit) {
+Result<ResultPage> ResultReader::After(const ResultFilter& filter, uint64_t after, uint64_t last,
+                                       size_t limit) {
   Where where;
   where.Add("number > ?", static_cast<int64_t>(after));
   where.Add("number <= ?", static_cast<int64_t>(last));

@@ -97,10 +97,14 @@ ResultStore::ResultStore(Database database, Statement insert, std::string epoch,
   writer_ = std::jthread([this] { WriteLoop(); });
 }
 
-ResultStore::~ResultStore() {
+ResultStore::~ResultStore() { Close(options_.close_timeout); }
+
+void ResultStore::Close(std::chrono::milliseconds patience) {
+  if (!writer_.joinable()) return;
   {
     MutexLock lock(mutex_);
     closing_ = true;
+    give_up_ns_ = SystemClock().MonotonicNs() + std::chrono::nanoseconds(patience).count();
   }
   changed_.NotifyAll();
   writer_.join();
@@ -170,7 +174,6 @@ std::vector<StoredResult> ResultStore::NextGroup() {
 }
 
 bool ResultStore::WriteUntilDone(std::vector<StoredResult>& group) {
-  int64_t tries_while_closing = options_.close_timeout / options_.retry_interval;
   while (true) {
     const Status written = WriteGroup(group);
     MutexLock lock(mutex_);
@@ -187,7 +190,7 @@ bool ResultStore::WriteUntilDone(std::vector<StoredResult>& group) {
                Str("results cannot be written and queue in memory: ", written.message()));
     }
     state_.fault = written;
-    if (closing_ && tries_while_closing-- <= 0) return false;
+    if (closing_ && SystemClock().MonotonicNs() >= give_up_ns_) return false;
     changed_.WaitFor(mutex_, options_.retry_interval);
   }
 }

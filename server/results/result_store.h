@@ -31,7 +31,7 @@ struct ResultStoreOptions {
   uint64_t min_free_bytes = 64u << 20;
   // Pause before a failed commit is tried again.
   std::chrono::milliseconds retry_interval{250};
-  // How long the last results may take to reach the disk when the store closes.
+  // How long the last results may take to reach the disk when the store goes.
   std::chrono::milliseconds close_timeout{5000};
 };
 
@@ -58,10 +58,14 @@ class ResultStore final : public ResultSink {
 
   static Result<std::unique_ptr<ResultStore>> Open(const std::filesystem::path& file,
                                                    const Clock& clock, Options options = {});
-  // Writes what is queued, within close_timeout.
+  // Closes within close_timeout.
   ~ResultStore() override;
 
   Result<std::string> Log(ResultRecord record) override VS_EXCLUDES(mutex_);
+
+  // Takes no more results and writes what is queued; what is not written within `patience` is lost,
+  // with an ERROR in the log.
+  void Close(std::chrono::milliseconds patience) VS_EXCLUDES(mutex_);
 
   ResultStoreState State() const VS_EXCLUDES(mutex_);
   // Ends when the returned handle goes.
@@ -98,6 +102,7 @@ class ResultStore final : public ResultSink {
   size_t writing_ VS_GUARDED_BY(mutex_) = 0;  // rows of the group that is being written
   ResultStoreState state_ VS_GUARDED_BY(mutex_);
   bool closing_ VS_GUARDED_BY(mutex_) = false;
+  int64_t give_up_ns_ VS_GUARDED_BY(mutex_) = 0;  // while closing, by the machine's clock
 
   std::jthread writer_;  // last: everything it uses exists before it starts
 };

@@ -25,6 +25,19 @@ size_t IndexOf(const std::array<std::string_view, kCount>& names, std::string_vi
 
 }  // namespace
 
+size_t SizeBytes(const StoredResult& result) {
+  constexpr size_t kNumbers = 200;  // with the id, the times and the classes
+  constexpr size_t kValue = 24;     // a number, or what goes around a text
+  const ResultRecord& record = result.record;
+  size_t bytes = kNumbers + record.job_id.size() + record.part_id.size() + record.meas_id.size() +
+                 record.reason.size();
+  for (const auto& [name, value] : record.values) {
+    const auto* text = std::get_if<std::string>(&value);
+    bytes += name.size() + kValue + (text == nullptr ? 0 : text->size());
+  }
+  return bytes;
+}
+
 std::string_view ResultStateName(ResultRecord::State state) {
   return kStates[static_cast<size_t>(state)];
 }

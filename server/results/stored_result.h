@@ -21,6 +21,9 @@ struct StoredResult {
   ResultRecord record;              // without capture_ns: that clock ended with its process
 };
 
+// What it takes in memory or in a message, rounded up.
+size_t SizeBytes(const StoredResult& result);
+
 // Which results are meant; all conditions hold at once.
 struct ResultFilter {
   std::string job_id;   // empty = all

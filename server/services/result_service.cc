@@ -25,6 +25,8 @@ constexpr uint32_t kDefaultRows = 1000;
 constexpr uint32_t kMaxRows = 10'000;
 constexpr int64_t kMaxQueryNs = 30'000'000'000;
 constexpr size_t kRowsPerLoad = 500;
+constexpr size_t kPieceBytes = 1u << 20;
+constexpr size_t kMaxColumns = 16'384;  // as many as spreadsheets take
 
 // A page token is the number of the last result of the page before.
 Result<std::optional<uint64_t>> ParsePageToken(const std::string& token) {
@@ -64,27 +66,38 @@ class Exporter {
       : reader_(reader), filter_(std::move(filter)), last_(last) {}
 
   Result<LoadedPage> Next() {
-    VS_ASSIGN_OR_RETURN(const std::vector<StoredResult> results,
-                        reader_.After(filter_, after_, last_, kRowsPerLoad));
-    if (!results.empty()) after_ = results.back().number;
-    const bool pass_over = results.size() < kRowsPerLoad;
-    if (csv_) return Rows(results, pass_over);
-    for (const StoredResult& result : results) {
-      for (const auto& [name, value] : result.record.values) names_.insert(name);
-    }
-    if (!pass_over) return LoadedPage();
-    csv_.emplace(names_);
-    after_ = 0;
-    return Piece(csv_->Header());
+    VS_ASSIGN_OR_RETURN(const ResultPage page, reader_.After(filter_, after_, last_, kRowsPerLoad));
+    return csv_ ? Rows(page) : Names(page);
   }
 
  private:
-  LoadedPage Rows(const std::vector<StoredResult>& results, bool pass_over) const {
+  // The first pass; its end gives the header.
+  Result<LoadedPage> Names(const ResultPage& page) {
+    for (const StoredResult& result : page.results) {
+      for (const auto& [name, value] : result.record.values) names_.insert(name);
+    }
+    if (names_.size() > kMaxColumns) {
+      return ResourceExhausted(Str("the results have more than ", kMaxColumns,
+                                   " different fields: export those of one job at a time"));
+    }
+    after_ = page.more ? page.results.back().number : 0;
+    if (page.more) return LoadedPage();
+    csv_.emplace(names_);
+    return Piece(csv_->Header());
+  }
+
+  // The second pass. A row has all columns, so it may be much larger than its result.
+  LoadedPage Rows(const ResultPage& page) {
     std::string text;
-    for (const StoredResult& result : results) text += csv_->Row(result);
-    LoadedPage page = Piece(std::move(text));
-    if (pass_over) page.then = LoadedPage::Then::kEnd;
-    return page;
+    size_t count = 0;
+    while (count < page.results.size() && text.size() < kPieceBytes) {
+      text += csv_->Row(page.results[count++]);
+    }
+    const bool all = count == page.results.size() && !page.more;
+    if (count > 0) after_ = page.results[count - 1].number;
+    LoadedPage piece = Piece(std::move(text));
+    if (all) piece.then = LoadedPage::Then::kEnd;
+    return piece;
   }
 
   static LoadedPage Piece(std::string text) {
@@ -134,15 +147,10 @@ Result<pb::ListResultsResponse> ResultService::ListResults(const Call& /*call*/,
   if (size > kMaxPage) {
     return InvalidArgument(Str("page_size must be 1 to ", kMaxPage, ", or 0 for ", kDefaultPage));
   }
-  // One more than asked for tells whether there is another page.
-  VS_ASSIGN_OR_RETURN(std::vector<StoredResult> results,
-                      readers_.lists->Before(filter, before, size + 1));
+  VS_ASSIGN_OR_RETURN(const ResultPage page, readers_.lists->Before(filter, before, size));
   pb::ListResultsResponse response;
-  if (results.size() > size) {
-    results.pop_back();
-    response.set_next_page_token(std::to_string(results.back().number));
-  }
-  for (const StoredResult& result : results) *response.add_results() = ToProto(result);
+  for (const StoredResult& result : page.results) *response.add_results() = ToProto(result);
+  if (page.more) response.set_next_page_token(std::to_string(page.results.back().number));
   return response;
 }
 
@@ -181,20 +189,25 @@ Result<std::unique_ptr<StreamSource>> ResultService::WatchResults(
     const Call& /*call*/, const pb::WatchResultsRequest& request) {
   VS_ASSIGN_OR_RETURN(ResultFilter filter, FromProto(request.filter()));
   filter.from_ns = filter.until_ns = std::nullopt;
-  const uint64_t first =
-      request.has_after_number() ? request.after_number() : store_.State().last_number;
+  const uint64_t newest = store_.State().last_number;
+  if (request.after_number() > newest) {
+    return OutOfRange(Str("the newest result has the number ", newest, ", not yet ",
+                          request.after_number(),
+                          ": the results were begun anew; go on after number 0"))
+        .WithReason("RESULTS_BEGUN_ANEW");
+  }
+  const uint64_t first = request.has_after_number() ? request.after_number() : newest;
   const auto load = [this, filter, after = first]() mutable -> Result<LoadedPage> {
     // Looked at before reading: what comes later is announced.
     const uint64_t last = store_.State().last_number;
-    VS_ASSIGN_OR_RETURN(const std::vector<StoredResult> results,
+    VS_ASSIGN_OR_RETURN(const ResultPage found,
                         readers_.watches->After(filter, after, last, kRowsPerLoad));
     LoadedPage page;
-    for (const StoredResult& result : results) {
+    for (const StoredResult& result : found.results) {
       page.messages.push_back(Serialize(ToProto(result)));
     }
-    const bool all = results.size() < kRowsPerLoad;
-    after = all ? std::max(after, last) : results.back().number;
-    if (all) page.then = LoadedPage::Then::kIdle;
+    after = found.more ? found.results.back().number : std::max(after, last);
+    if (!found.more) page.then = LoadedPage::Then::kIdle;
     return page;
   };
   return std::make_unique<LoadingSource>(loads_, load, [this](std::function<void()> wake) {

@@ -131,6 +131,23 @@ void FakeResults::Cut() {
   changed_.notify_all();
 }
 
+void FakeResults::BeginAnew() {
+  const std::lock_guard lock(mutex_);
+  stored_ = 0;
+  ++cuts_;
+  changed_.notify_all();
+}
+
+void FakeResults::StopListing() {
+  const std::lock_guard lock(mutex_);
+  listing_ = false;
+}
+
+bool FakeResults::WaitForLists(int asked) {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, kPatience, [&] { return lists_ >= asked; });
+}
+
 bool FakeResults::WaitForStreams(int opened) {
   std::unique_lock lock(mutex_);
   return changed_.wait_for(lock, kPatience, [&] { return opened_ >= opened; });
@@ -141,6 +158,7 @@ grpc::Status FakeResults::WatchResults(grpc::ServerContext* context,
                                        grpc::ServerWriter<v1::Result>* writer) {
   std::unique_lock lock(mutex_);
   const int cuts = cuts_;
+  if (request->after_number() > stored_) return {grpc::OUT_OF_RANGE, "begun anew"};
   uint64_t sent = request->has_after_number() ? request->after_number() : stored_;
   ++opened_;
   changed_.notify_all();
@@ -158,10 +176,13 @@ grpc::Status FakeResults::WatchResults(grpc::ServerContext* context,
   return {grpc::UNAVAILABLE, "going away"};
 }
 
-grpc::Status FakeResults::ListResults(grpc::ServerContext* /*context*/,
+grpc::Status FakeResults::ListResults(grpc::ServerContext* context,
                                       const v1::ListResultsRequest* /*request*/,
                                       v1::ListResultsResponse* response) {
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
+  ++lists_;
+  changed_.notify_all();
+  while (!listing_ && !context->IsCancelled()) changed_.wait_for(lock, kGlance);
   if (stored_ > 0) response->add_results()->set_number(stored_);
   return grpc::Status::OK;
 }

@@ -65,7 +65,12 @@ class FakeResults final : public v1::ResultService::Service {
   void Store(int count);
   // Ends open streams.
   void Cut();
+  // Ends open streams and forgets all results: the next one has the number 1.
+  void BeginAnew();
+  // From now on ListResults answers only those who go.
+  void StopListing();
   bool WaitForStreams(int opened);
+  bool WaitForLists(int asked);
 
  private:
   grpc::Status WatchResults(grpc::ServerContext* context, const v1::WatchResultsRequest* request,
@@ -78,6 +83,8 @@ class FakeResults final : public v1::ResultService::Service {
   uint64_t stored_ = 0;
   int cuts_ = 0;
   int opened_ = 0;
+  int lists_ = 0;
+  bool listing_ = true;
 };
 
 class FakeSystem final : public v1::SystemService::Service {

@@ -59,6 +59,25 @@ TEST_F(ResultStreamTest, MissesNothingWhenTheConnectionBreaks) {
   ExpectNumbers(stream, 4, 303);
 }
 
+TEST_F(ResultStreamTest, GoesOnWithTheFirstResultOfAServerThatBeganAnew) {
+  results().Store(50);
+  ResultStream stream = client_->WatchResults({}, 48);
+  ExpectNumbers(stream, 49, 50);
+  results().BeginAnew();
+  results().Store(3);
+  ExpectNumbers(stream, 1, 3);
+}
+
+TEST_F(ResultStreamTest, EndsWhileItAsksWhereToBegin) {
+  results().StopListing();
+  // The call's own time limit is no help.
+  auto client = Client::Connect(
+      {.address = server_.Address(), .plaintext = true, .call_timeout = std::chrono::hours(1)});
+  ASSERT_TRUE(client);
+  const ResultStream stream = (*client)->WatchResults();
+  ASSERT_TRUE(results().WaitForLists(1));
+}
+
 TEST_F(ResultStreamTest, EndsWithAFullQueue) {
   results().Store(1000);
   ResultStream stream = client_->WatchResults({}, 0);

@@ -49,9 +49,9 @@ class ResultReaderTest : public ::testing::Test {
     reader_ = ResultReader::Open(file_).value();
   }
 
-  static std::vector<uint64_t> Numbers(const Result<std::vector<StoredResult>>& results) {
+  static std::vector<uint64_t> Numbers(const Result<ResultPage>& page) {
     std::vector<uint64_t> numbers;
-    for (const StoredResult& result : results.value()) numbers.push_back(result.number);
+    for (const StoredResult& result : page.value().results) numbers.push_back(result.number);
     return numbers;
   }
 
@@ -87,6 +87,36 @@ TEST_F(ResultReaderTest, AllConditionsOfAFilterHoldAtOnce) {
                                      0, 9, 9)),
               ElementsAre(2, 3));
   EXPECT_THAT(Numbers(reader_->After({.job_id = "' OR 1 = 1 --"}, 0, 9, 9)), ElementsAre());
+}
+
+TEST_F(ResultReaderTest, APageTellsWhetherThereAreMore) {
+  EXPECT_TRUE(reader_->Before({}, std::nullopt, 5)->more);
+  EXPECT_FALSE(reader_->Before({}, std::nullopt, 6)->more);
+  EXPECT_FALSE(reader_->After({}, 3, 5, 2)->more);
+}
+
+TEST_F(ResultReaderTest, APageEndsEarlyWhenResultsAreLarge) {
+  {
+    auto store = ResultStore::Open(file_, clock_).value();
+    for (int i = 0; i < 50; ++i) {
+      ResultRecord record;
+      record.job_id = "large";
+      record.values = {{"text", std::string(60'000, 'x')}};
+      ASSERT_TRUE(store->Log(record).has_value());
+    }
+  }
+  uint64_t after = 0;
+  size_t results = 0;
+  int pages = 0;
+  for (bool more = true; more; ++pages) {
+    const ResultPage page = reader_->After({.job_id = "large"}, after, 1000, 1000).value();
+    EXPECT_LE(page.results.size(), 35u);  // 35 x 60,000 bytes are 2.1 MB
+    results += page.results.size();
+    after = page.results.back().number;
+    more = page.more;
+  }
+  EXPECT_EQ(50u, results);
+  EXPECT_EQ(2, pages);
 }
 
 TEST_F(ResultReaderTest, OneResultIsFoundByItsId) {

@@ -47,7 +47,14 @@ class ResultStoreTest : public ::testing::Test {
   std::vector<StoredResult> ReadAll() {
     auto reader = ResultReader::Open(file_);
     EXPECT_TRUE(reader.has_value()) << reader.error().ToString();
-    return (*reader)->After({}, 0, INT64_MAX, 100'000).value();
+    std::vector<StoredResult> all;
+    ResultPage page{.more = true};
+    while (page.more) {
+      const uint64_t after = all.empty() ? 0 : all.back().number;
+      page = (*reader)->After({}, after, INT64_MAX, 1000).value();
+      all.insert(all.end(), page.results.begin(), page.results.end());
+    }
+    return all;
   }
 
   test::TempFolder folder_;
@@ -103,7 +110,7 @@ TEST_F(ResultStoreTest, AResultIsOnTheDiskWhenItIsAnnounced) {
   std::atomic<uint64_t> announced = 0;
   std::atomic<bool> readable = true;
   auto handle = store->OnCommitted([&](uint64_t last) {
-    const auto newest = reader->Before({}, std::nullopt, 1).value();
+    const auto newest = reader->Before({}, std::nullopt, 1).value().results;
     if (newest.empty() || newest[0].number != last) readable = false;
     announced = last;
   });
@@ -213,6 +220,17 @@ TEST_F(ResultStoreTest, ClosingWritesWhatIsQueued) {
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(store->Log(Record("p")).has_value());
   store = nullptr;
   EXPECT_EQ(100u, ReadAll().size());
+}
+
+TEST_F(ResultStoreTest, ClosingGivesUpWhenItsTimeHasPassed) {
+  // Patience for hours when it goes: only Close can end this test.
+  auto store = Open({.min_free_bytes = uint64_t{1} << 60, .close_timeout = std::chrono::hours(9)});
+  ASSERT_TRUE(store->Log(Record("lost")).has_value());
+  store->Close(std::chrono::milliseconds(1));
+  EXPECT_EQ(1u, store->State().queued);
+  EXPECT_EQ(StatusCode::kResourceExhausted, store->Log(Record("late")).error().code());
+  store.reset();
+  EXPECT_TRUE(ReadAll().empty());
 }
 
 TEST_F(ResultStoreTest, AResultThatCannotBeKeptIsRefusedWithTheReason) {

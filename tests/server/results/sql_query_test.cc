@@ -21,13 +21,13 @@ thread_local size_t largest_allocation_bytes = SIZE_MAX;
 
 }  // namespace
 
-void* operator new(size_t size_bytes) {
+[[gnu::noinline]] void* operator new(size_t size_bytes) {
   void* memory = size_bytes > largest_allocation_bytes ? nullptr : std::malloc(size_bytes);
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept { std::free(memory); }
 
 namespace vs {
 namespace {
