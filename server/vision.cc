@@ -45,6 +45,11 @@ Result<std::unique_ptr<Vision>> Vision::Open(const config::ServerConfig& config,
 
 Vision::~Vision() = default;
 
+void Vision::Close(const Deadline& end) {
+  StopSequences();
+  results_->Close(end.Left());
+}
+
 Status Vision::OpenStores(const config::ServerConfig& config, const Clock& clock) {
   const std::filesystem::path& data_dir = folders_.data_dir;
   const std::filesystem::path rigs =
@@ -74,10 +79,10 @@ Status Vision::MakeServices(const config::ServerConfig& config, const Clock& clo
       return status.Annotated("camera " + id);
     }
   }
-  sequence_service_ = std::make_unique<SequenceService>(*sequences_, *manager_);
+  sequence_service_ = std::make_unique<SequenceService>(*sequences_, *manager_, clock);
   parameter_service_ = std::make_unique<ParameterService>(*manager_);
   stream_service_ = std::make_unique<StreamService>(*streams_, clock);
-  camera_service_ = std::make_unique<CameraService>(cameras_, *manager_, std::move(cameras));
+  camera_service_ = std::make_unique<CameraService>(cameras_, *manager_, std::move(cameras), clock);
   VS_ASSIGN_OR_RETURN(result_service_, ResultService::Make(*results_, clock));
   return Status();
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/clock.h"
+#include "engine/base/deadline.h"
 #include "engine/base/host_folders.h"
 #include "engine/base/status.h"
 #include "engine/camera/camera_hub.h"
@@ -43,6 +44,8 @@ class Vision {
   void StartSequences() { manager_->StartMarked(); }
   // After this nothing starts any more.
   void StopSequences() { manager_->StopAll(); }
+  // Stops what runs and writes what it logged, as ResultStore::Close.
+  void Close(const Deadline& end);
 
   SequenceManager& sequences() { return *manager_; }
   ResultStore& results() { return *results_; }

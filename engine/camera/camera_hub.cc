@@ -140,8 +140,9 @@ std::vector<CameraHub::Entry> CameraHub::List() const {
   return entries;
 }
 
-Result<std::vector<FoundCamera>> CameraHub::Discover(std::chrono::milliseconds timeout) const {
-  VS_ASSIGN_OR_RETURN(std::vector<FoundCamera> cameras, DiscoverGevCameras(timeout));
+Result<std::vector<FoundCamera>> CameraHub::Discover(std::chrono::milliseconds timeout,
+                                                     const std::stop_token& cancelled) const {
+  VS_ASSIGN_OR_RETURN(std::vector<FoundCamera> cameras, DiscoverGevCameras(timeout, "", cancelled));
   for (FoundCamera& camera : cameras) {
     const auto privilege = ReadGevRegister(camera.address, kGevControlPrivilege, kAskTime);
     camera.in_use = privilege && *privilege != 0;

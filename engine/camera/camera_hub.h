@@ -3,6 +3,7 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -46,8 +47,9 @@ class CameraHub {
   // The cameras that somebody uses now.
   std::vector<Entry> List() const;
 
-  // Asks all networks for cameras; takes as long as `timeout`.
-  Result<std::vector<FoundCamera>> Discover(std::chrono::milliseconds timeout) const;
+  // Asks all networks for cameras; takes as long as `timeout`, or until `cancelled` stops.
+  Result<std::vector<FoundCamera>> Discover(std::chrono::milliseconds timeout,
+                                            const std::stop_token& cancelled = {}) const;
 
  private:
   class Closer;

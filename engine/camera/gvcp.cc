@@ -30,6 +30,7 @@ constexpr uint16_t kPort = 3956;
 constexpr int kTries = 3;
 constexpr size_t kHeaderBytes = 8;
 constexpr size_t kDiscoveryBytes = 248;
+constexpr int kLookForCancelMs = 50;
 constexpr uint16_t kDiscovery = 0x0002;
 constexpr uint16_t kReadRegister = 0x0080;
 constexpr uint8_t kAckRequired = 0x01;
@@ -192,8 +193,8 @@ std::vector<Socket> BroadcastDiscovery(uint16_t id) {
 
 }  // namespace
 
-Result<std::vector<FoundCamera>> DiscoverGevCameras(Milliseconds timeout,
-                                                    const std::string& wanted) {
+Result<std::vector<FoundCamera>> DiscoverGevCameras(Milliseconds timeout, const std::string& wanted,
+                                                    const std::stop_token& cancelled) {
   constexpr uint16_t kId = 1;
   const auto deadline = SteadyClock::now() + timeout;
   const std::vector<Socket> sockets = BroadcastDiscovery(kId);
@@ -203,7 +204,10 @@ Result<std::vector<FoundCamera>> DiscoverGevCameras(Milliseconds timeout,
   std::map<uint32_t, FoundCamera> by_address;
   std::array<uint8_t, 1024> memory;
   bool complete = false;
-  while (!complete && poll(events.data(), events.size(), RemainingMs(deadline)) > 0) {
+  while (!complete && RemainingMs(deadline) > 0) {
+    if (cancelled.stop_requested()) return Cancelled("the search for cameras was cancelled");
+    const int wait_ms = std::min(RemainingMs(deadline), kLookForCancelMs);
+    if (poll(events.data(), events.size(), wait_ms) <= 0) continue;
     for (pollfd& event : events) {
       if ((event.revents & POLLIN) == 0) {
         if (event.revents != 0) event.fd = -1;  // this network is gone: hear it no more

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,11 @@ struct FoundCamera {
 };
 
 // Asks all networks of this machine and collects the answers until `timeout`, or until the camera
-// with serial number `wanted` has answered. The order is by address.
+// with serial number `wanted` has answered. The order is by address. CANCELLED soon after
+// `cancelled` stops.
 Result<std::vector<FoundCamera>> DiscoverGevCameras(std::chrono::milliseconds timeout,
-                                                    const std::string& wanted = "");
+                                                    const std::string& wanted = "",
+                                                    const std::stop_token& cancelled = {});
 
 // Asks one camera who it is. UNAVAILABLE when it does not answer in time (asked three times).
 Result<FoundCamera> IdentifyGevCamera(const std::string& address,

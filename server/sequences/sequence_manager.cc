@@ -75,8 +75,8 @@ Result<SequenceStatus> SequenceManager::Look(const std::string& id) {
 
 std::vector<SequenceStatus> SequenceManager::List() {
   std::vector<SequenceStatus> list;
-  for (const StoredSequence& stored : store_.List()) {
-    if (auto status = Look(stored.spec.id)) list.push_back(std::move(*status));
+  for (const std::string& id : store_.Ids()) {
+    if (auto status = Look(id)) list.push_back(std::move(*status));
   }
   return list;
 }
@@ -149,7 +149,7 @@ void SequenceManager::NoteEdited(const StoredSequence& stored) {
 }
 
 Result<std::shared_ptr<SequenceInstance>> SequenceManager::Instance(const std::string& id) {
-  if (const auto stored = store_.Get(id); !stored.has_value()) return stored.error();
+  VS_RETURN_IF_ERROR(store_.Find(id));
   MutexLock lock(mutex_);
   if (closing_) return Unavailable("the server is shutting down");
   std::shared_ptr<SequenceInstance>& instance = instances_[id];

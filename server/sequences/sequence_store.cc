@@ -53,10 +53,26 @@ std::vector<StoredSequence> SequenceStore::List() const {
   return list;
 }
 
+std::vector<std::string> SequenceStore::Ids() const {
+  std::vector<std::string> ids;
+  MutexLock lock(mutex_);
+  for (const auto& [id, stored] : sequences_) ids.push_back(id);
+  return ids;
+}
+
 Result<StoredSequence> SequenceStore::Get(const std::string& id) const {
   MutexLock lock(mutex_);
-  const auto found = sequences_.find(id);
-  if (found != sequences_.end()) return found->second;
+  VS_RETURN_IF_ERROR(FindLocked(id));
+  return sequences_.at(id);
+}
+
+Status SequenceStore::Find(const std::string& id) const {
+  MutexLock lock(mutex_);
+  return FindLocked(id);
+}
+
+Status SequenceStore::FindLocked(const std::string& id) const {
+  if (sequences_.contains(id)) return Status();
   std::string names;
   for (const auto& [name, stored] : sequences_) names += (names.empty() ? "" : ", ") + name;
   return NotFound(Str("there is no sequence ", Quoted(id),

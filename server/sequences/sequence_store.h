@@ -27,7 +27,11 @@ class SequenceStore {
 
   // By id.
   std::vector<StoredSequence> List() const VS_EXCLUDES(mutex_);
+  // The ids alone, in their order.
+  std::vector<std::string> Ids() const VS_EXCLUDES(mutex_);
   // NOT_FOUND names the sequences that there are.
+  Status Find(const std::string& id) const VS_EXCLUDES(mutex_);
+  // Errors as Find.
   Result<StoredSequence> Get(const std::string& id) const VS_EXCLUDES(mutex_);
 
   // ABORTED when the current revision is not the one of `etag` (empty: any).
@@ -47,6 +51,7 @@ class SequenceStore {
       : folder_(std::move(folder)), clock_(clock) {}
 
   void Load(const std::filesystem::path& file);
+  Status FindLocked(const std::string& id) const VS_REQUIRES(mutex_);
   Status Write(StoredSequence* stored) VS_EXCLUDES(mutex_);
   std::filesystem::path FileOf(const std::string& id) const { return folder_ / (id + ".json"); }
 

@@ -42,8 +42,11 @@ pb::DiscoveredCamera ToProto(const FoundCamera& found) {
 }  // namespace
 
 CameraService::CameraService(CameraHub& hub, SequenceManager& manager,
-                             std::map<std::string, CameraUri> cameras)
-    : hub_(hub), manager_(manager), cameras_(std::move(cameras)) {}
+                             std::map<std::string, CameraUri> cameras, const Clock& clock)
+    : hub_(hub),
+      manager_(manager),
+      cameras_(std::move(cameras)),
+      observed_(clock, [this] { return Observe(); }) {}
 
 void CameraService::Register(Router& router) {
   const std::string service = "/visionserver.v1.CameraService/";
@@ -114,14 +117,14 @@ Result<pb::Camera> CameraService::GetCamera(const Call& /*call*/,
 }
 
 Result<pb::DiscoverCamerasResponse> CameraService::DiscoverCameras(
-    const Call& /*call*/, const pb::DiscoverCamerasRequest& request) {
+    const Call& call, const pb::DiscoverCamerasRequest& request) {
   const uint32_t timeout_ms = request.timeout_ms() == 0 ? kDefaultSearchMs : request.timeout_ms();
   if (timeout_ms < kMinSearchMs || timeout_ms > kMaxSearchMs) {
     return InvalidArgument(
         Str("timeout_ms must be ", kMinSearchMs, " to ", kMaxSearchMs, ", or 0"));
   }
   VS_ASSIGN_OR_RETURN(const std::vector<FoundCamera> found,
-                      hub_.Discover(std::chrono::milliseconds(timeout_ms)));
+                      hub_.Discover(std::chrono::milliseconds(timeout_ms), call.cancelled));
   const std::vector<CameraEntry> known = Cameras();
   pb::DiscoverCamerasResponse response;
   for (const FoundCamera& one : found) {
@@ -186,18 +189,19 @@ Result<pb::TriggerCameraResponse> CameraService::TriggerCamera(
 
 Result<std::unique_ptr<StreamSource>> CameraService::WatchCameras(
     const Call& /*call*/, const pb::WatchCamerasRequest& request) {
-  const auto look = [this] {
-    Observation all;
-    pb::WatchCamerasResponse response;
-    for (const CameraEntry& entry : Cameras()) {
-      all.changes += Str(entry.id, ' ', static_cast<int>(entry.stats.state), ' ',
-                         entry.stats.last_error, '\n');
-      *response.add_cameras() = vs::ToProto(entry);
-    }
-    all.message = Serialize(response);
-    return std::vector<Observation>{std::move(all)};
-  };
-  return PeriodicSource::Make(request.interval_ms(), look, nullptr);
+  return PeriodicSource::Make(observed_, {.interval_ms = request.interval_ms()});
+}
+
+SharedObservations::List CameraService::Observe() {
+  Observation all;
+  pb::WatchCamerasResponse response;
+  for (const CameraEntry& entry : Cameras()) {
+    all.changes +=
+        Str(entry.id, ' ', static_cast<int>(entry.stats.state), ' ', entry.stats.last_error, '\n');
+    *response.add_cameras() = vs::ToProto(entry);
+  }
+  all.message = Serialize(response);
+  return {std::move(all)};
 }
 
 Result<CameraUri> CameraService::Find(const std::string& id) {

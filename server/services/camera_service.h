@@ -7,19 +7,23 @@
 
 #include "visionserver/v1/camera.pb.h"
 
+#include "engine/base/clock.h"
 #include "engine/base/status.h"
 #include "engine/camera/camera_hub.h"
 #include "server/convert/camera.h"
 #include "server/rpc/router.h"
 #include "server/sequences/sequence_manager.h"
+#include "server/services/shared_observations.h"
 
 namespace vs {
 
 // Cameras and their features: see camera.proto.
 class CameraService {
  public:
-  // `cameras`: those of the configuration, by id. The references must outlive it.
-  CameraService(CameraHub& hub, SequenceManager& manager, std::map<std::string, CameraUri> cameras);
+  // `cameras`: those of the configuration, by id. The references must outlive it, and it its open
+  // streams.
+  CameraService(CameraHub& hub, SequenceManager& manager, std::map<std::string, CameraUri> cameras,
+                const Clock& clock);
   void Register(Router& router);
 
   // All cameras that somebody knows.
@@ -43,6 +47,7 @@ class CameraService {
   Result<std::unique_ptr<StreamSource>> WatchCameras(
       const Call& call, const visionserver::v1::WatchCamerasRequest& request);
 
+  SharedObservations::List Observe();
   // Where the camera of this id (a name, or the URI of a camera that is open) is.
   Result<CameraUri> Find(const std::string& id);
   // The camera as it is open, or opened just to look at it.
@@ -51,6 +56,7 @@ class CameraService {
   CameraHub& hub_;
   SequenceManager& manager_;
   const std::map<std::string, CameraUri> cameras_;
+  SharedObservations observed_;
 };
 
 }  // namespace vs

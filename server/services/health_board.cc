@@ -7,7 +7,9 @@ namespace vs {
 void HealthBoard::Set(const std::string& name, bool serving) {
   {
     MutexLock lock(mutex_);
-    serving_[name] = serving;
+    const auto [entry, is_new] = serving_.try_emplace(name, serving);
+    if (!is_new && entry->second == serving) return;
+    entry->second = serving;
   }
   Tell();
 }
@@ -15,7 +17,7 @@ void HealthBoard::Set(const std::string& name, bool serving) {
 void HealthBoard::Remove(const std::string& name) {
   {
     MutexLock lock(mutex_);
-    serving_.erase(name);
+    if (serving_.erase(name) == 0) return;
   }
   Tell();
 }

@@ -73,6 +73,19 @@ Observation Observe(const SequenceStatus& status) {
 
 }  // namespace
 
+SequenceService::SequenceService(SequenceStore& store, SequenceManager& manager, const Clock& clock)
+    : store_(store),
+      manager_(manager),
+      states_(clock,
+              [&manager] {
+                SharedObservations::List states;
+                for (const SequenceStatus& status : manager.List()) {
+                  states.push_back(Observe(status));
+                }
+                return states;
+              }),
+      listening_(manager.changed().Add([this](const std::string&) { states_.Renew(); })) {}
+
 void SequenceService::Register(Router& router) {
   const std::string service = "/visionserver.v1.SequenceService/";
   router.Unary(service + "ListSequences", this, &SequenceService::ListSequences);
@@ -190,20 +203,11 @@ Result<std::unique_ptr<StreamSource>> SequenceService::WatchSequence(
   if (!id.empty()) {
     if (const auto status = manager_.Look(id); !status) return status.error();
   }
-  const auto look = [this, id] {
-    std::vector<Observation> observations;
-    if (id.empty()) {
-      for (const SequenceStatus& status : manager_.List()) {
-        observations.push_back(Observe(status));
-      }
-    } else if (const auto status = manager_.Look(id)) {
-      observations.push_back(Observe(*status));
-    }
-    return observations;
-  };
-  return PeriodicSource::Make(request.interval_ms(), look, [this](std::function<void()> wake) {
+  const auto listen = [this](std::function<void()> wake) {
     return manager_.changed().Add([wake = std::move(wake)](const std::string&) { wake(); });
-  });
+  };
+  return PeriodicSource::Make(states_,
+                              {.interval_ms = request.interval_ms(), .id = id, .listen = listen});
 }
 
 pb::Sequence SequenceService::Described(const StoredSequence& stored, bool with_spec) {

@@ -1,20 +1,23 @@
 #pragma once
 
+#include <memory>
+
 #include "visionserver/v1/sequence.pb.h"
 
+#include "engine/base/clock.h"
 #include "engine/base/status.h"
 #include "server/rpc/router.h"
 #include "server/sequences/sequence_manager.h"
 #include "server/sequences/sequence_store.h"
+#include "server/services/shared_observations.h"
 
 namespace vs {
 
 // Storing, checking, starting and watching sequences: see sequence.proto.
 class SequenceService {
  public:
-  // Both must outlive it.
-  SequenceService(SequenceStore& store, SequenceManager& manager)
-      : store_(store), manager_(manager) {}
+  // All must outlive it, and it its open streams.
+  SequenceService(SequenceStore& store, SequenceManager& manager, const Clock& clock);
   void Register(Router& router);
 
  private:
@@ -47,6 +50,8 @@ class SequenceService {
 
   SequenceStore& store_;
   SequenceManager& manager_;
+  SharedObservations states_;
+  const std::shared_ptr<void> listening_;  // the first to hear of a change: it renews states_
 };
 
 }  // namespace vs
