@@ -32,7 +32,7 @@ struct Range {
   int32_t max;
 };
 // The ranges that server_config.proto tells its reader.
-constexpr std::array<Range, 14> kRanges = {{{"Limits.connections", 1, 10'000},
+constexpr std::array<Range, 15> kRanges = {{{"Limits.connections", 1, 10'000},
                                             {"Limits.connections_per_address", 1, 10'000},
                                             {"Limits.streams_per_connection", 1, 1'000},
                                             {"Limits.open_streams", 1, 100'000},
@@ -41,6 +41,7 @@ constexpr std::array<Range, 14> kRanges = {{{"Limits.connections", 1, 10'000},
                                             {"Limits.handshake_ms", 500, 60'000},
                                             {"Limits.keepalive_ms", 1'000, 3'600'000},
                                             {"Limits.unread_ms", 500, 600'000},
+                                            {"Limits.streams_per_session", 1, 100'000},
                                             {"Sessions.idle_minutes", 1, 10'080},
                                             {"Sessions.lifetime_minutes", 1, 43'200},
                                             {"Sessions.per_user", 1, 1'000},

@@ -1,11 +1,22 @@
 #include "server/rpc/dispatcher.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "engine/base/str.h"
 
 namespace vs {
+namespace {
+
+// To whom a call is charged.
+const std::string& SessionOf(const Call& call) {
+  return call.caller.credential_id.empty() ? call.address : call.caller.credential_id;
+}
+
+Status ShuttingDown() { return Unavailable("the server is shutting down"); }
+
+}  // namespace
 
 Dispatcher::Dispatcher(const Router& router, Gatekeeper& gatekeeper,
                        const DispatcherOptions& options)
@@ -20,7 +31,7 @@ Dispatcher::Dispatcher(const Router& router, Gatekeeper& gatekeeper,
       // Each open stream queues at most twice, and their number is bounded.
       stream_(options.stream_threads, std::numeric_limits<size_t>::max()) {
   for (const auto& [name, method] : router.methods()) counters_[name];
-  timer_.At(0, [this] { InspectStreams(); });
+  timer_.At(0, [this] { Inspect(); });
 }
 
 Dispatcher::~Dispatcher() {
@@ -37,12 +48,13 @@ std::shared_ptr<ServerCall> Dispatcher::Begin(const std::string& method,
   Call call{.method = method, .address = std::move(address)};
   if (caller) call.caller = *caller;
   auto server_call = std::make_shared<ServerCall>(*this, found, std::move(call), channel);
+  Add(server_call);
   if (!caller) {
     server_call->Refuse(caller.error());
   } else if (found == nullptr) {
     server_call->Refuse(Unimplemented(Str("there is no method ", method)));
   } else if (draining_) {
-    server_call->Refuse(Unavailable("the server is shutting down"));
+    server_call->Refuse(ShuttingDown());
   } else {
     server_call->Begin();
   }
@@ -51,10 +63,13 @@ std::shared_ptr<ServerCall> Dispatcher::Begin(const std::string& method,
 
 void Dispatcher::Drain() {
   draining_ = true;
-  for (const auto& stream : Streams()) stream->End(Unavailable("the server is shutting down"));
+  for (const auto& call : Calls()) call->End(ShuttingDown());
 }
 
-bool Dispatcher::Idle() const { return calls_ == 0; }
+bool Dispatcher::Idle() const {
+  MutexLock lock(mutex_);
+  return calls_.empty();
+}
 
 size_t Dispatcher::OpenStreams() const {
   MutexLock lock(mutex_);
@@ -92,11 +107,32 @@ Executor& Dispatcher::executor(Lane lane) {
   return quick_;
 }
 
-bool Dispatcher::AddStream(const std::shared_ptr<ServerCall>& call) {
+void Dispatcher::Add(const std::shared_ptr<ServerCall>& call) {
   MutexLock lock(mutex_);
-  if (streams_.size() >= options_.max_open_streams) return false;
-  streams_.emplace(call.get(), call);
-  return true;
+  calls_.emplace(call.get(), call);
+}
+
+void Dispatcher::Remove(const ServerCall* call) {
+  MutexLock lock(mutex_);
+  streams_.erase(call);
+  calls_.erase(call);
+}
+
+Status Dispatcher::AddStream(const ServerCall* call) {
+  MutexLock lock(mutex_);
+  if (streams_.size() >= options_.max_open_streams) {
+    return ResourceExhausted(Str("all clients together have ", options_.max_open_streams,
+                                 " streams open, the server's limit; close some"));
+  }
+  const std::string& session = SessionOf(call->call());
+  const auto own = std::count_if(streams_.begin(), streams_.end(), [&](const ServerCall* stream) {
+    return SessionOf(stream->call()) == session;
+  });
+  if (static_cast<size_t>(own) >= options_.max_streams_per_session) {
+    return ResourceExhausted(Str("this login has ", own, " streams open, its limit; close some"));
+  }
+  streams_.insert(call);
+  return Status();
 }
 
 void Dispatcher::Finished(const ServerCall& call, const Status& status, bool streaming,
@@ -119,23 +155,33 @@ void Dispatcher::Finished(const ServerCall& call, const Status& status, bool str
   }
 }
 
-std::vector<std::shared_ptr<ServerCall>> Dispatcher::Streams() const {
+std::vector<std::shared_ptr<ServerCall>> Dispatcher::Calls() const {
   std::vector<std::shared_ptr<ServerCall>> all;
   MutexLock lock(mutex_);
-  for (const auto& [key, stream] : streams_) {
-    if (auto open = stream.lock()) all.push_back(std::move(open));
+  for (const auto& [key, weak] : calls_) {
+    if (auto call = weak.lock()) all.push_back(std::move(call));
   }
   return all;
 }
 
-void Dispatcher::InspectStreams() {
-  const int64_t now_ns = clock_.MonotonicNs();
-  for (const auto& stream : Streams()) {
-    stream->Inspect(now_ns);
-    // What was opened while the drain began.
-    if (draining_) stream->End(Unavailable("the server is shutting down"));
+std::vector<std::shared_ptr<ServerCall>> Dispatcher::Streams() const {
+  std::vector<std::shared_ptr<ServerCall>> all;
+  MutexLock lock(mutex_);
+  for (const ServerCall* stream : streams_) {
+    if (auto call = calls_.at(stream).lock()) all.push_back(std::move(call));
   }
-  timer_.At(now_ns + options_.inspection_period_ns, [this] { InspectStreams(); });
+  return all;
+}
+
+void Dispatcher::Inspect() {
+  const int64_t now_ns = clock_.MonotonicNs();
+  for (const auto& stream : Streams()) stream->Recheck();
+  for (const auto& call : Calls()) {
+    call->CutOffIfUnread(now_ns);
+    // What began while the drain did.
+    if (draining_) call->End(ShuttingDown());
+  }
+  timer_.At(now_ns + options_.inspection_period_ns, [this] { Inspect(); });
 }
 
 }  // namespace vs

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,11 @@ struct DispatcherOptions {
   size_t password_queue = 16;
   int stream_threads = 2;
   size_t max_open_streams = 1024;
-  // A client that does not read a message for so long loses its stream.
+  // Of one login session or API key; of one address when nobody is logged in.
+  size_t max_streams_per_session = 32;
+  // A client that does not read a message or an answer for so long loses its call.
   int64_t unread_limit_ns = 5'000'000'000;
-  // How often open streams are inspected; revocation takes effect within twice that.
+  // How often calls are inspected; revocation ends open streams within twice that.
   int64_t inspection_period_ns = 250'000'000;
 };
 
@@ -57,9 +60,10 @@ class Dispatcher {
   std::shared_ptr<ServerCall> Begin(const std::string& method, std::string_view credential,
                                     std::string address, Channel& channel);
 
-  // From now on new calls get UNAVAILABLE; open streams end with it after the message under way.
+  // From now on new calls get UNAVAILABLE, and so do those that no thread has begun with; open
+  // streams end with it after the message under way. What is being worked on is told to stop.
   void Drain();
-  // No call is being worked on and no stream is open.
+  // The network has let go of every call.
   bool Idle() const;
   size_t OpenStreams() const;
   // Of the methods that were called, in the order of their names.
@@ -76,11 +80,14 @@ class Dispatcher {
   };
 
   Executor& executor(Lane lane);
-  // False: there are too many.
-  bool AddStream(const std::shared_ptr<ServerCall>& call) VS_EXCLUDES(mutex_);
+  void Add(const std::shared_ptr<ServerCall>& call) VS_EXCLUDES(mutex_);
+  void Remove(const ServerCall* call) VS_EXCLUDES(mutex_);
+  // RESOURCE_EXHAUSTED.
+  Status AddStream(const ServerCall* call) VS_EXCLUDES(mutex_);
   // Of each call once, when its outcome is known.
   void Finished(const ServerCall& call, const Status& status, bool streaming, int64_t took_ns);
-  void InspectStreams();
+  void Inspect();
+  std::vector<std::shared_ptr<ServerCall>> Calls() const VS_EXCLUDES(mutex_);
   std::vector<std::shared_ptr<ServerCall>> Streams() const VS_EXCLUDES(mutex_);
 
   const Router& router_;
@@ -89,9 +96,9 @@ class Dispatcher {
   const DispatcherOptions options_;
   std::map<std::string, Counters> counters_;  // by method; the keys never change
   std::atomic<bool> draining_{false};
-  std::atomic<int> calls_{0};
   mutable Mutex mutex_;
-  std::map<const ServerCall*, std::weak_ptr<ServerCall>> streams_ VS_GUARDED_BY(mutex_);
+  std::map<const ServerCall*, std::weak_ptr<ServerCall>> calls_ VS_GUARDED_BY(mutex_);
+  std::set<const ServerCall*> streams_ VS_GUARDED_BY(mutex_);  // those of the calls that are open
 
   Executor quick_;
   Executor slow_;

@@ -1,5 +1,6 @@
 #include "server/rpc/server_call.h"
 
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <utility>
@@ -15,10 +16,6 @@ namespace {
 constexpr int64_t kLastMessageNs = 500'000'000;
 
 Status ClientGone() { return Cancelled("the client has gone or its deadline has passed"); }
-
-Status TooManyStreams() {
-  return ResourceExhausted("too many streams are open on this server; close some");
-}
 
 // A bug of ours: the client learns where to look, the log says what happened.
 Status Incident(const std::string& method, int64_t now_ns, std::string_view what) {
@@ -53,19 +50,21 @@ ServerCall::ServerCall(Dispatcher& dispatcher, const Method* method, Call call, 
       waker_(std::make_shared<Waker>(dispatcher)),
       channel_(&channel) {
   call_.cancelled = cancelled_.get_token();
-  ++dispatcher_.calls_;
 }
 
-ServerCall::~ServerCall() { --dispatcher_.calls_; }
+ServerCall::~ServerCall() { dispatcher_.Remove(this); }
 
 void ServerCall::Begin() {
   waker_->call = weak_from_this();
-  if (method_->client_streaming && !dispatcher_.AddStream(shared_from_this())) {
-    FinishWith(TooManyStreams());
-    return;
+  if (method_->client_streaming) {
+    if (const Status added = dispatcher_.AddStream(this); !added.ok()) {
+      FinishWith(added);
+      return;
+    }
   }
   MutexLock lock(mutex_);
-  channel_->Receive();
+  // Unless the server shuts down at this moment.
+  if (phase_ == Phase::kReceiving) channel_->Receive();
 }
 
 void ServerCall::Refuse(const Status& status) { FinishWith(status); }
@@ -111,8 +110,8 @@ void ServerCall::OnRequest(std::optional<std::string> bytes) {
 }
 
 void ServerCall::RunHandler(const std::string& request) {
-  if (call_.cancelled.stop_requested()) {
-    FinishWith(ClientGone());
+  if (const std::optional<Status> reason = ReasonToEnd()) {
+    FinishWith(*reason);
   } else if (method_->answer) {
     Answer(request);
   } else {
@@ -123,7 +122,8 @@ void ServerCall::RunHandler(const std::string& request) {
 void ServerCall::Answer(const std::string& request) {
   Result<WireMessage> answer = method_->answer(call_, request);
   if (!answer) {
-    FinishWith(answer.error());
+    const bool stopped = answer.error().code() == StatusCode::kCancelled;
+    FinishWith(stopped ? ReasonToEnd().value_or(answer.error()) : answer.error());
   } else if (method_->client_streaming) {
     SendNext(std::move(*answer));
   } else {
@@ -139,8 +139,8 @@ void ServerCall::OpenSource(const std::string& request) {
     return;
   }
   source_ = std::move(*source);
-  if (!dispatcher_.AddStream(shared_from_this())) {
-    FinishWith(TooManyStreams());
+  if (const Status added = dispatcher_.AddStream(this); !added.ok()) {
+    FinishWith(added);
     return;
   }
   source_->Start([waker = waker_] { waker->Wake(); });
@@ -237,6 +237,11 @@ void ServerCall::OnCancelled() {
   FinishIfAtRest(ClientGone());
 }
 
+void ServerCall::OnDone() {
+  MutexLock lock(mutex_);
+  channel_ = nullptr;
+}
+
 void ServerCall::End(const Status& status) {
   {
     MutexLock lock(mutex_);
@@ -245,6 +250,7 @@ void ServerCall::End(const Status& status) {
       ending_since_ns_ = dispatcher_.clock_.MonotonicNs();
     }
   }
+  cancelled_.request_stop();
   FinishIfAtRest(status);
 }
 
@@ -257,7 +263,7 @@ void ServerCall::FinishIfAtRest(const Status& status) {
   FinishWith(status);
 }
 
-void ServerCall::Inspect(int64_t now_ns) {
+void ServerCall::Recheck() {
   bool in_use = false;
   {
     MutexLock lock(mutex_);
@@ -265,19 +271,22 @@ void ServerCall::Inspect(int64_t now_ns) {
   }
   const Status allowed = dispatcher_.gatekeeper_.Recheck(call_.method, call_.caller, in_use);
   if (!allowed.ok()) End(allowed);
+}
 
+void ServerCall::CutOffIfUnread(int64_t now_ns) {
   MutexLock lock(mutex_);
-  if (phase_ != Phase::kSending) return;
+  const bool sending = phase_ == Phase::kSending || phase_ == Phase::kDone;
+  if (!sending || cut_off_ || channel_ == nullptr) return;
   const int64_t unread_ns = now_ns - sending_since_ns_;
-  if (ending_ && now_ns - ending_since_ns_ > kLastMessageNs) {
-    channel_->Abort();
-  } else if (!ending_ && unread_ns > dispatcher_.options_.unread_limit_ns) {
+  if (unread_ns > dispatcher_.options_.unread_limit_ns) {
     LogInfo("rpc", Str("ended ", call_.method, " of ", call_.caller.name, " at ", call_.address,
                        ": nothing was read for ", unread_ns / 1'000'000, " ms"));
-    ending_ = Cancelled("the client did not read");
-    ending_since_ns_ = now_ns;
-    channel_->Abort();
+    if (!ending_) ending_ = Cancelled("the client did not read");
+  } else if (!ending_ || now_ns - std::max(ending_since_ns_, sending_since_ns_) <= kLastMessageNs) {
+    return;
   }
+  cut_off_ = true;
+  channel_->Abort();
 }
 
 void ServerCall::FinishWith(const Status& status) {
@@ -290,15 +299,15 @@ void ServerCall::FinishWith(const Status& status) {
 
 void ServerCall::Close(const Status& status, std::optional<WireMessage> last_message) {
   phase_ = Phase::kDone;
+  sending_since_ns_ = dispatcher_.clock_.MonotonicNs();
   const bool streaming = method_ != nullptr && method_->server_streaming;
   dispatcher_.Finished(
       *this, status, streaming,
       call_.arrived_ns == 0 ? 0 : dispatcher_.clock_.MonotonicNs() - call_.arrived_ns);
-  Channel* channel = std::exchange(channel_, nullptr);
   if (last_message) {
-    channel->SendAndFinish(std::move(*last_message));
+    channel_->SendAndFinish(std::move(*last_message));
   } else {
-    channel->Finish(status);
+    channel_->Finish(status);
   }
 }
 

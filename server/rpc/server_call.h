@@ -17,8 +17,8 @@ namespace vs {
 
 class Dispatcher;
 
-// The network's half of one call. Calls are made from any thread, never two at once, and none after
-// Finish or SendAndFinish.
+// The network's half of one call. Functions are called from any thread, never two at once; after
+// Finish or SendAndFinish only Abort, and nothing after ServerCall::OnDone.
 class Channel {
  public:
   virtual ~Channel() = default;
@@ -51,17 +51,22 @@ class ServerCall : public std::enable_shared_from_this<ServerCall> {
   void OnSent(bool ok);
   // The client has gone or the deadline has passed.
   void OnCancelled();
+  // All is sent or has failed: the channel goes.
+  void OnDone();
 
   // For the dispatcher: begins by reading the request, or refuses.
   void Begin();
   void Refuse(const Status& status);
-  // For the dispatcher, several times a second while the call is an open stream.
-  void Inspect(int64_t now_ns);
-  // Ends an open stream as soon as its current message is out.
+  // For the dispatcher, several times a second while the call is an open stream: may it go on?
+  void Recheck();
+  // For the dispatcher, several times a second.
+  void CutOffIfUnread(int64_t now_ns);
+  // Ends an open stream as soon as its current message is out; tells a handler to stop.
   void End(const Status& status);
   const Call& call() const { return call_; }
 
  private:
+  // kDone: the answer or the status is on its way or there.
   enum class Phase { kReceiving, kWorking, kWaiting, kSending, kDone };
   struct Waker;
 
@@ -89,13 +94,14 @@ class ServerCall : public std::enable_shared_from_this<ServerCall> {
   const std::shared_ptr<Waker> waker_;
 
   Mutex mutex_;
-  Channel* channel_ VS_GUARDED_BY(mutex_);
+  Channel* channel_ VS_GUARDED_BY(mutex_);  // null when the network is done
   Phase phase_ VS_GUARDED_BY(mutex_) = Phase::kReceiving;
   std::optional<Status> ending_ VS_GUARDED_BY(mutex_);  // why it ends at the next chance
   int64_t ending_since_ns_ VS_GUARDED_BY(mutex_) = 0;
   int64_t sending_since_ns_ VS_GUARDED_BY(mutex_) = 0;
   int64_t timer_ns_ VS_GUARDED_BY(mutex_) = 0;  // the next wake that was asked of the timer
   bool sent_something_ VS_GUARDED_BY(mutex_) = false;
+  bool cut_off_ VS_GUARDED_BY(mutex_) = false;
   // Touched only in kWorking, by the one thread that works.
   std::unique_ptr<StreamSource> source_;
 };

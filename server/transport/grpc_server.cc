@@ -7,6 +7,7 @@
 #include <grpcpp/security/tls_certificate_provider.h>
 #include <grpcpp/security/tls_credentials_options.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -85,7 +86,10 @@ class Reactor final : public grpc::ServerGenericBidiReactor, public Channel {
   }
   void OnWriteDone(bool ok) override { call_->OnSent(ok); }
   void OnCancel() override { call_->OnCancelled(); }
-  void OnDone() override { delete this; }
+  void OnDone() override {
+    call_->OnDone();
+    delete this;
+  }
 
   void Receive() override { StartRead(&request_); }
   void Send(WireMessage message) override {
@@ -135,14 +139,17 @@ void SetLimits(const GrpcServerOptions& options, grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, Ms(options.keepalive) / 2);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
-  // Clients may ask us just as often; gRPC's own answer to that would be to hang up.
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS,
-                             Ms(options.keepalive) / 2);
+                             Ms(ShortestPingInterval(options.keepalive)));
   grpc::ResourceQuota quota("connections");
   builder.SetResourceQuota(quota.Resize(options.memory_bytes));
 }
 
 }  // namespace
+
+std::chrono::milliseconds ShortestPingInterval(std::chrono::milliseconds keepalive) {
+  return std::min<std::chrono::milliseconds>(std::chrono::seconds(5), keepalive / 2);
+}
 
 class GrpcServer::Impl final : public grpc::CallbackGenericService {
  public:

@@ -33,6 +33,10 @@ struct GrpcServerOptions {
   size_t memory_bytes = size_t{512} << 20;
 };
 
+// How often clients may ask a server that asks them every `keepalive` for a sign of life: our own
+// do so every ten seconds. gRPC hangs up on a client that asks more often.
+std::chrono::milliseconds ShortestPingInterval(std::chrono::milliseconds keepalive);
+
 // gRPC on a TCP port. Every call of every service goes to the dispatcher, through one generic
 // entry.
 class GrpcServer {

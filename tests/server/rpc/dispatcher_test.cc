@@ -35,8 +35,9 @@ constexpr const char* kExchange = "/grpc.reflection.v1alpha.ServerReflection/Ser
 class FakeGate final : public Gatekeeper {
  public:
   Result<Caller> Admit(const std::string& /*method*/, std::string_view credential) override {
-    if (credential != "good") return Unauthenticated("not let in");
-    return Caller{.kind = Caller::Kind::kUser, .name = "maria"};
+    if (!credential.starts_with("good")) return Unauthenticated("not let in");
+    return Caller{
+        .kind = Caller::Kind::kUser, .name = "maria", .credential_id = std::string(credential)};
   }
   Status Recheck(const std::string& /*method*/, const Caller& /*caller*/, bool in_use) override {
     if (in_use) ++uses;
@@ -179,6 +180,11 @@ class TestService {
       go_on.wait();
     }
     was_cancelled = call.cancelled.stop_requested();
+    if (request.user() == "until cancelled") {
+      waiting.count_down();
+      EXPECT_TRUE(WaitUntil([&] { return call.cancelled.stop_requested(); }));
+      return Cancelled("nobody waits");
+    }
     pb::LoginResponse response;
     response.set_token(call.caller.name);
     return response;
@@ -476,6 +482,16 @@ TEST_F(DispatcherTest, StreamThatNobodyReadsIsCutOff) {
   EXPECT_TRUE(WaitUntil([&] { return service_.numbers.sources == 0; }));
 }
 
+TEST_F(DispatcherTest, AnswerThatNobodyReadsIsCutOff) {
+  Start({.unread_limit_ns = 5'000'000});
+  FakeChannel channel;
+  const auto call = Begin(kLogin, channel);
+  call->OnRequest(LoginBytes("maria"));
+  EXPECT_TRUE(channel.status().ok());
+  EXPECT_TRUE(WaitUntil([&] { return channel.aborts == 1; }));
+  call->OnDone();
+}
+
 TEST_F(DispatcherTest, ReadingAStreamCountsAsUseOfTheSession) {
   FakeChannel channel;
   const auto call = Open(channel);
@@ -506,6 +522,24 @@ TEST_F(DispatcherTest, RefusesMoreStreamsThanItTakes) {
   EXPECT_TRUE(fourth.Ended());
 }
 
+TEST_F(DispatcherTest, OneSessionDoesNotTakeTheStreamsOfAll) {
+  Start({.max_open_streams = 3, .max_streams_per_session = 1});
+  FakeChannel first;
+  FakeChannel second;
+  FakeChannel other;
+  const auto one = Open(first);
+  Begin(kWatch, second)->OnRequest("");
+  EXPECT_EQ(second.status().code(), StatusCode::kResourceExhausted);
+  EXPECT_THAT(second.status().message(), HasSubstr("this login"));
+  const auto bens = Begin(kWatch, other, "good ben");
+  bens->OnRequest("");
+  EXPECT_TRUE(WaitUntil([&] { return dispatcher_->OpenStreams() == 2; }));
+  one->OnCancelled();
+  bens->OnCancelled();
+  EXPECT_TRUE(first.Ended());
+  EXPECT_TRUE(other.Ended());
+}
+
 TEST_F(DispatcherTest, DrainEndsStreamsAndRefusesCalls) {
   FakeChannel stream;
   const auto open = Open(stream);
@@ -521,6 +555,20 @@ TEST_F(DispatcherTest, DrainEndsStreamsAndRefusesCalls) {
   EXPECT_FALSE(dispatcher_->Idle());
   service_.go_on.count_down();
   EXPECT_TRUE(working.status().ok());
+}
+
+TEST_F(DispatcherTest, DrainStopsWhatWorksAndWhatQueues) {
+  Start({.quick_threads = 1});
+  FakeChannel working;
+  Begin(kLogin, working)->OnRequest(LoginBytes("until cancelled"));
+  service_.waiting.wait();
+  FakeChannel queued;
+  Begin(kLogin, queued)->OnRequest(LoginBytes("maria"));
+  dispatcher_->Drain();
+  // Neither failed by itself.
+  EXPECT_EQ(working.status(), Unavailable("the server is shutting down"));
+  EXPECT_EQ(queued.status(), Unavailable("the server is shutting down"));
+  EXPECT_TRUE(WaitUntil([&] { return dispatcher_->Idle(); }));
 }
 
 TEST_F(DispatcherTest, CountsCallsByMethod) {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <random>
 
+#include "visionserver/v1/result.pb.h"
 #include "visionserver/v1/session.grpc.pb.h"
 #include "visionserver/v1/system.grpc.pb.h"
 
@@ -16,6 +17,7 @@
 #include "tests/support/child_process.h"
 #include "tests/support/client_call.h"
 #include "tests/support/raw_call.h"
+#include "tests/support/raw_http2.h"
 #include "tests/support/raw_socket.h"
 #include "tests/support/test_server.h"
 #include "tests/support/wait_until.h"
@@ -113,6 +115,56 @@ TEST(GrpcServer, RefusesMetadataOverTheLimit) {
   EXPECT_EQ(CallRaw(server.Connect(), kListUsers, std::string(9000, 'x')).status.error_code(),
             grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_TRUE(Serves(server));
+}
+
+// CVE-2023-1428: gRPC before 1.53 could be made to abort like this.
+TEST(GrpcServer, SurvivesAWrongHeaderTogetherWithTooManyOthers) {
+  TestServer server;
+  for (const auto& wrong : test::HeaderFields{
+           {"te", "x"}, {":scheme", "x"}, {"grpclb_client_stats", "x"}, {"grpc-timeout", "x"}}) {
+    test::HeaderFields fields = test::GrpcFields(kInfo, "");
+    std::erase_if(fields, [&](const auto& field) { return field.first == wrong.first; });
+    // Those of HTTP/2 itself go before the others.
+    fields.insert(wrong.first.starts_with(':') ? fields.begin() : fields.end(), wrong);
+    fields.emplace_back("x-much", std::string(9'000, 'x'));
+    RawSocket socket(server->port());
+    socket.Send(test::Http2Preface() + test::Http2Headers(1, fields));
+    EXPECT_TRUE(Serves(server)) << wrong.first;
+  }
+}
+
+TEST(GrpcServer, CutsOffAClientThatDoesNotReadItsAnswer) {
+  TestServer server({.config = "limits { unread_ms: 500 keepalive_ms: 3600000 }"});
+  constexpr const char* kQuery = "/visionserver.v1.ResultService/QueryResults";
+  pb::QueryResultsRequest large;
+  large.set_sql("SELECT hex(zeroblob(400000))");
+  RawSocket client(server->port());
+  client.Send(test::Http2Preface() +
+              test::GrpcCall(1, kQuery, server.Token(Role::kViewer), large.SerializeAsString()));
+  // It is answered, with more than goes out at once; the call is not over before the client reads.
+  ASSERT_TRUE(WaitUntil([&] {
+    const std::vector<MethodStats> methods = server->dispatcher().Statistics();
+    return methods.size() == 1 && methods[0].method == kQuery && methods[0].succeeded == 1;
+  }));
+  EXPECT_FALSE(server->dispatcher().Idle());
+  EXPECT_TRUE(WaitUntil([&] { return server->dispatcher().Idle(); }));
+}
+
+TEST(GrpcServer, DropsAPeerThatShowsNoSignOfLife) {
+  TestServer server({.config = "limits { keepalive_ms: 1000 unread_ms: 600000 }"});
+  RawSocket peer(server->port());
+  peer.Send(test::Http2Preface() +
+            test::GrpcCall(1, "/grpc.health.v1.Health/Watch", server.Token(Role::kViewer), ""));
+  ASSERT_TRUE(WaitUntil([&] { return server->dispatcher().OpenStreams() == 1; }));
+  EXPECT_TRUE(WaitUntil([&] { return server->dispatcher().OpenStreams() == 0; }));
+  EXPECT_TRUE(peer.WaitForClose());
+}
+
+TEST(GrpcServer, BearsThatItsClientsAskForASignOfLifeEveryTenSeconds) {
+  using std::chrono::milliseconds;
+  EXPECT_EQ(ShortestPingInterval(milliseconds(1'000)), milliseconds(500));
+  EXPECT_EQ(ShortestPingInterval(milliseconds(10'000)), milliseconds(5'000));
+  EXPECT_EQ(ShortestPingInterval(milliseconds(3'600'000)), milliseconds(5'000));
 }
 
 TEST(GrpcServer, UnpacksNoCompressedMessages) {
