@@ -3,6 +3,7 @@
 #include <malloc.h>
 #include <pthread.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
@@ -23,6 +24,7 @@ namespace {
 
 constexpr int kExitFailure = 1;
 constexpr int kExitBadConfig = 2;
+constexpr unsigned int kEndS = 10;
 
 // A frame is larger than what malloc takes from its heap at first: each one would be mapped and
 // page by page touched anew, which costs more than all the rest of sending it.
@@ -94,6 +96,16 @@ void WaitForSignal(const sigset_t& signals, int report_s, Server& server) {
   }
 }
 
+// Ends the process after this time even if something cannot be stopped.
+void EndWithin(unsigned int seconds) {
+  std::signal(SIGALRM, [](int) {
+    static constexpr char kMessage[] = "visionserver: something did not stop in time\n";
+    [[maybe_unused]] const auto written = write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
+    _exit(kExitFailure);
+  });
+  alarm(seconds);
+}
+
 int Fail(const Status& status, int exit_code) {
   std::fprintf(stderr, "visionserver: %s\n", status.ToString().c_str());
   return exit_code;
@@ -143,7 +155,9 @@ int RunProgram(int argument_count, char** arguments) {
   LogInfo("server", "shutting down; once more to do so at once");
   // Whoever asks twice does not want to wait.
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+  EndWithin(kEndS);
   (*server)->Drain();
+  server->reset();
   return EXIT_SUCCESS;
 }
 

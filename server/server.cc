@@ -18,10 +18,10 @@ using std::chrono::milliseconds;
 
 constexpr int64_t kMinuteNs = int64_t{60} * 1'000'000'000;
 constexpr int64_t kDayNs = 24 * 60 * kMinuteNs;
-// How long the three steps of a graceful end may take; together less than ten seconds.
+// A graceful end. The steps share the whole; the last bytes have their part for sure.
+constexpr milliseconds kGrace{9000};
 constexpr milliseconds kAnnouncement{200};
-constexpr milliseconds kLastCalls{5000};
-constexpr milliseconds kLastBytes{2000};
+constexpr milliseconds kLastBytes{1000};
 
 // A method that nobody decided about must not be reachable.
 void CheckPolicyIsComplete(const Router& router) {
@@ -46,6 +46,7 @@ AccessOptions ToAccessOptions(const config::ServerConfig& config, const DataFold
 DispatcherOptions ToDispatcherOptions(const config::Limits& limits) {
   DispatcherOptions options;
   options.max_open_streams = limits.open_streams();
+  options.max_streams_per_session = limits.streams_per_session();
   options.unread_limit_ns = int64_t{limits.unread_ms()} * 1'000'000;
   return options;
 }
@@ -72,6 +73,7 @@ Result<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
   server->vision_->StartSequences();
   server->vision_watch_ = std::make_unique<VisionWatch>(*server->vision_, server->health_,
                                                         server->alarms_, server->system_clock_);
+  server->housekeeper_ = std::jthread([raw = server.get()] { raw->KeepHouse(); });
   return server;
 }
 
@@ -83,6 +85,12 @@ Server::Server(const ServerOptions& options, DataFolder folder)
       alarms_(clock_) {}
 
 Server::~Server() {
+  {
+    MutexLock lock(mutex_);
+    closing_ = true;
+  }
+  changed_.NotifyAll();
+  if (housekeeper_.joinable()) housekeeper_.join();
   if (dispatcher_) dispatcher_->Drain();
   if (grpc_) grpc_->Stop(milliseconds(0));
 }
@@ -130,11 +138,7 @@ Status Server::StartNetwork() {
     }
     VS_ASSIGN_OR_RETURN(const CertificateInfo info, CheckCertificate(*options.certificate));
     fingerprint_ = info.fingerprint;
-    if (info.not_after_utc_ns < clock_.UtcNs() + 30 * kDayNs) {
-      alarms_.Raise("certificate", AlarmBoard::Severity::kWarning,
-                    Str(options.certificate->certificate.string(),
-                        " ends within 30 days, or has ended; put a new one in its place"));
-    }
+    certificate_ = options.certificate;
   }
   dispatcher_ =
       std::make_unique<Dispatcher>(router_, *access_, ToDispatcherOptions(config_.limits()));
@@ -145,16 +149,45 @@ Status Server::StartNetwork() {
 }
 
 void Server::Drain() {
+  const Deadline end(system_clock_, kGrace);
   health_.Drain();
   // Whoever watches the health sees it before the streams end.
   std::this_thread::sleep_for(kAnnouncement);
   dispatcher_->Drain();
-  const auto deadline = std::chrono::steady_clock::now() + kLastCalls;
-  while (!dispatcher_->Idle() && std::chrono::steady_clock::now() < deadline) {
+  // First what must not be lost, whatever the calls do.
+  vision_->Close(end);
+  while (!dispatcher_->Idle() && end.Left() > kLastBytes) {
     std::this_thread::sleep_for(milliseconds(10));
   }
-  grpc_->Stop(kLastBytes);
-  vision_->StopSequences();
+  grpc_->Stop(end.Left());
+}
+
+void Server::KeepHouse() {
+  while (true) {
+    LookAround();
+    MutexLock lock(mutex_);
+    if (!closing_) changed_.WaitFor(mutex_, std::chrono::minutes(1));
+    if (closing_) return;
+  }
+}
+
+void Server::LookAround() {
+  if (const Status stored = access_->sessions().StoreLastUse(); !stored.ok()) {
+    LogWarn("access", Str("the last use of sessions is not stored: ", stored.message()));
+  }
+  if (certificate_) LookAtCertificate();
+}
+
+void Server::LookAtCertificate() {
+  const Result<CertificateInfo> info = CheckCertificate(*certificate_);
+  if (info && info->not_after_utc_ns >= clock_.UtcNs() + 30 * kDayNs) {
+    alarms_.Clear("certificate");
+    return;
+  }
+  alarms_.Raise("certificate", AlarmBoard::Severity::kWarning,
+                info ? Str(certificate_->certificate.string(),
+                           " ends within 30 days, or has ended; put a new one in its place")
+                     : info.error().message());
 }
 
 std::string Server::address() const {

@@ -5,8 +5,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "engine/base/clock.h"
+#include "engine/base/mutex.h"
 #include "engine/base/status.h"
 #include "server/access/access_control.h"
 #include "server/access/password.h"
@@ -46,9 +48,13 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  // Ends gracefully, within ten seconds: health says NOT_SERVING, new calls and streams are
-  // refused, what runs comes to its end.
+  // Ends gracefully, within nine seconds unless a call or a block cannot be stopped: health says
+  // NOT_SERVING, new calls and streams are refused, sequences stop, their results reach the disk,
+  // and what is being worked on comes to its end.
   void Drain();
+
+  // Stores the last use of sessions and looks at the certificate. Calls itself once a minute.
+  void LookAround();
 
   // "127.0.0.1:50051": where it listens, with the port that it really got.
   std::string address() const;
@@ -70,6 +76,8 @@ class Server {
   Status OpenStores();
   void RegisterServices();
   Status StartNetwork();
+  void LookAtCertificate();
+  void KeepHouse() VS_EXCLUDES(mutex_);
 
   const ServerOptions options_;
   const config::ServerConfig& config_;
@@ -94,9 +102,15 @@ class Server {
   std::unique_ptr<ReflectionService> reflection_service_;
   Router router_;
 
-  // What brings calls. It goes first.
+  // What brings calls. It goes before the parts above.
   std::unique_ptr<Dispatcher> dispatcher_;
   std::unique_ptr<GrpcServer> grpc_;
+
+  std::optional<CertificateFiles> certificate_;
+  Mutex mutex_;
+  CondVar changed_;
+  bool closing_ VS_GUARDED_BY(mutex_) = false;
+  std::jthread housekeeper_;
 };
 
 }  // namespace vs

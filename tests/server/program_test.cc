@@ -10,7 +10,9 @@
 #include <random>
 #include <regex>
 
+#include "visionserver/v1/camera.pb.h"
 #include "visionserver/v1/result.grpc.pb.h"
+#include "visionserver/v1/session.grpc.pb.h"
 
 #include "engine/base/str.h"
 #include "server/server.h"
@@ -29,6 +31,7 @@ using test::CallRaw;
 using test::ChildProcess;
 using test::ClientCall;
 using test::FinishedProcess;
+using test::RawCall;
 using test::RawSocket;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -67,6 +70,26 @@ class ProgramTest : public ::testing::Test {
   }
   std::shared_ptr<grpc::Channel> Connect() const {
     return grpc::CreateChannel(Str("ipv4:127.0.0.1:", port_), grpc::InsecureChannelCredentials());
+  }
+
+  // A token of the administrator of a new server.
+  std::string LogInAsAdmin(ChildProcess& server) const {
+    const auto line = server.WaitForLine("one-time password");
+    EXPECT_TRUE(line.has_value());
+    const std::string one_time = line.value_or("").substr(line.value_or("").rfind(' ') + 1);
+    const auto sessions = pb::SessionService::NewStub(Connect());
+    pb::LoginRequest login;
+    login.set_user("admin");
+    login.set_password(one_time);
+    pb::LoginResponse logged_in;
+    EXPECT_TRUE(sessions->Login(ClientCall("").context(), login, &logged_in).ok());
+    pb::ChangePasswordRequest change;
+    change.set_old_password(one_time);
+    change.set_new_password("correct horse battery");
+    pb::ChangePasswordResponse changed;
+    EXPECT_TRUE(
+        sessions->ChangePassword(ClientCall(logged_in.token()).context(), change, &changed).ok());
+    return logged_in.token();
   }
 
   static constexpr const char* kPlain =
@@ -204,6 +227,45 @@ TEST_F(ProgramTest, KeepsEveryResultThatAClientSawWhenItIsKilled) {
     }
     EXPECT_EQ(seen.size(), seen.rbegin()->first) << "numbers are without gaps";
   }
+}
+
+TEST_F(ProgramTest, EndsInTimeWhateverIsUnderWayAndKeepsWhatItAnnounced) {
+  Write(kPlain);
+  std::filesystem::create_directories(folder_ / "data" / "sequences");
+  std::ofstream(folder_ / "data" / "sequences" / "log.json") << kLogging;
+  auto server = Start(Command());
+  const std::string token = LogInAsAdmin(*server);
+  const std::shared_ptr<grpc::Channel> client = Connect();
+  const auto results = pb::ResultService::NewStub(client);
+  ClientCall watch(token);
+  pb::WatchResultsRequest from_first;
+  from_first.set_after_number(0);
+  const auto announced = results->WatchResults(watch.context(), from_first);
+  pb::Result result;
+  ASSERT_TRUE(announced->Read(&result));
+  pb::DiscoverCamerasRequest search;
+  search.set_timeout_ms(10'000);
+  RawCall discovery(client, "/visionserver.v1.CameraService/DiscoverCameras", token);
+  ASSERT_TRUE(discovery.Send(search.SerializeAsString()));
+  // It is under way: what was sent after it on the same connection is answered.
+  ASSERT_TRUE(CallRaw(client, kInfo, "").status.ok());
+
+  server->Signal(SIGTERM);
+  int64_t told = 1;
+  while (announced->Read(&result)) ++told;
+  EXPECT_EQ(announced->Finish().error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(discovery.Finish().error_code(), grpc::StatusCode::UNAVAILABLE);
+  // The program itself ends with another code when its ten seconds are over.
+  EXPECT_EQ(server->WaitForExit(), 0);
+
+  server = Start(Command());
+  pb::QueryResultsRequest count;
+  count.set_sql("SELECT count(*) FROM result WHERE number <= ?1");
+  count.add_arguments()->set_int_value(static_cast<int64_t>(result.number()));
+  pb::QueryResultsResponse counted;
+  const auto kept = pb::ResultService::NewStub(Connect());
+  ASSERT_TRUE(kept->QueryResults(ClientCall(token).context(), count, &counted).ok());
+  EXPECT_EQ(counted.table().rows(0).cells(0).int_value(), told);
 }
 
 TEST_F(ProgramTest, RescuesTheAdministrator) {

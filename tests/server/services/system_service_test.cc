@@ -8,6 +8,7 @@
 #include <google/protobuf/descriptor.pb.h>
 
 #include "tests/support/client_call.h"
+#include "tests/support/fake_clock.h"
 #include "tests/support/raw_call.h"
 #include "tests/support/test_server.h"
 
@@ -159,6 +160,17 @@ TEST_F(SystemServiceTest, ReflectionDescribesWhatThereIs) {
   EXPECT_EQ(response.error_response().error_code(), grpc::StatusCode::NOT_FOUND);
   stream->WritesDone();
   EXPECT_TRUE(stream->Finish().ok());
+}
+
+TEST(Certificate, RaisesAnAlarmWhenItsEndComesNear) {
+  test::FakeClock clock;
+  TestServer server({.tls = true, .clock = &clock});
+  server->LookAround();
+  EXPECT_TRUE(server->alarms().List().empty());
+  clock.Advance(std::chrono::hours(24 * 365 * 20));  // it is made for ten years
+  server->LookAround();
+  ASSERT_EQ(server->alarms().List().size(), 1U);
+  EXPECT_EQ(server->alarms().List()[0].id, "certificate");
 }
 
 TEST(Reflection, IsOffInTheRunTimeProfile) {

@@ -426,6 +426,62 @@ TEST_F(SequenceApi, WhatASequenceLogsIsWatchedListedQueriedAndExported) {
   EXPECT_THAT(csv, HasSubstr(result.result_id()));
 }
 
+TEST_F(SequenceApi, AWatcherWhoKnowsResultsThatAreNotThereIsToldSo) {
+  ClientCall call(operator_);
+  pb::WatchResultsRequest request;
+  request.set_after_number(1);  // of results that somebody has put away
+  const auto watch = results_->WatchResults(call.context(), request);
+  pb::Result result;
+  EXPECT_FALSE(watch->Read(&result));
+  const grpc::Status told = watch->Finish();
+  EXPECT_EQ(grpc::StatusCode::OUT_OF_RANGE, told.error_code());
+  EXPECT_EQ("RESULTS_BEGUN_ANEW", ReasonOf(told));
+}
+
+TEST_F(SequenceApi, LargeResultsComeInPagesThatEveryClientTakes) {
+  ResultRecord record;
+  record.job_id = "large";
+  for (int i = 0; i < 100; ++i) {
+    record.values = {{"text", std::string(60'000, 'x')}};
+    ASSERT_TRUE(server_->vision().results().Log(record).has_value());
+  }
+  ASSERT_TRUE(WaitUntil([&] { return server_->vision().results().State().last_number == 100; }));
+  pb::ListResultsRequest request;
+  request.set_page_size(1000);
+  int results = 0;
+  int pages = 0;
+  do {
+    pb::ListResultsResponse page;
+    const grpc::Status listed =
+        results_->ListResults(ClientCall(operator_).context(), request, &page);
+    ASSERT_TRUE(listed.ok()) << listed.error_message();
+    results += page.results_size();
+    request.set_page_token(page.next_page_token());
+    ++pages;
+  } while (!request.page_token().empty());
+  EXPECT_EQ(100, results);
+  EXPECT_EQ(3, pages);  // 6 MB in pages of 2 MB
+
+  // The same by stream and as a file.
+  ClientCall watch_call(operator_);
+  pb::WatchResultsRequest from_first;
+  from_first.set_after_number(0);
+  const auto watch = results_->WatchResults(watch_call.context(), from_first);
+  pb::Result result;
+  for (uint64_t number = 1; number <= 100; ++number) {
+    ASSERT_TRUE(watch->Read(&result));
+    ASSERT_EQ(number, result.number());
+  }
+  watch_call.context()->TryCancel();
+  ClientCall export_call(operator_);
+  const auto pieces = results_->ExportResults(export_call.context(), pb::ExportResultsRequest());
+  pb::ExportResultsResponse piece;
+  size_t bytes = 0;
+  while (pieces->Read(&piece)) bytes += piece.data().size();
+  EXPECT_TRUE(pieces->Finish().ok());
+  EXPECT_GT(bytes, 6'000'000u);
+}
+
 TEST_F(SequenceApi, EndlessQueriesKeepNobodyElseWaiting) {
   Create(CountSpec());
   ASSERT_TRUE(Start("count").ok());
