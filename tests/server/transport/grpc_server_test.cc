@@ -112,8 +112,8 @@ TEST(GrpcServer, RefusesAMessageOverTheLimitAndKeepsTheConnection) {
 
 TEST(GrpcServer, RefusesMetadataOverTheLimit) {
   TestServer server;
-  EXPECT_EQ(CallRaw(server.Connect(), kListUsers, std::string(9000, 'x')).status.error_code(),
-            grpc::StatusCode::RESOURCE_EXHAUSTED);
+  const grpc::Status refused = CallRaw(server.Connect(), kListUsers, std::string(9000, 'x')).status;
+  EXPECT_EQ(refused.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << refused.error_message();
   EXPECT_TRUE(Serves(server));
 }
 
