@@ -31,6 +31,7 @@ using test::ClientCall;
 using test::RawSocket;
 using test::TestServer;
 using test::WaitUntil;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
 constexpr const char* kInfo = "/visionserver.v1.SystemService/GetServerInfo";
@@ -112,8 +113,10 @@ TEST(GrpcServer, RefusesAMessageOverTheLimitAndKeepsTheConnection) {
 
 TEST(GrpcServer, RefusesMetadataOverTheLimit) {
   TestServer server;
-  const grpc::Status refused = CallRaw(server.Connect(), kListUsers, std::string(9000, 'x')).status;
-  EXPECT_EQ(refused.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << refused.error_message();
+  // A client that has heard of the limit already does not even send it; on another the server hangs
+  // up.
+  EXPECT_THAT(CallRaw(server.Connect(), kListUsers, std::string(9000, 'x')).status.error_code(),
+              AnyOf(grpc::StatusCode::RESOURCE_EXHAUSTED, grpc::StatusCode::UNAVAILABLE));
   EXPECT_TRUE(Serves(server));
 }
 
