@@ -6,7 +6,8 @@
 namespace vs {
 namespace {
 
-constexpr int64_t kLargestToleranceNs = 5'000'000;
+// Shorter than half the picture period of all but the fastest cameras.
+constexpr int64_t kCautiousNs = 5'000'000;
 
 bool CountTriggers(const Frame& a, const Frame& b) { return a.trigger != 0 && b.trigger != 0; }
 
@@ -73,11 +74,14 @@ int Pairer::Compare(const Frame& a, const Frame& b) const {
 }
 
 int64_t Pairer::ToleranceNs() const {
-  if (options_.tolerance_ns > 0) return options_.tolerance_ns;
+  const int64_t asked_ns = options_.tolerance_ns;
   const size_t known = std::min<uint64_t>(interval_count_, kIntervals);
-  if (known == 0) return kLargestToleranceNs;
+  if (known == 0) return asked_ns == 0 ? kCautiousNs : std::min(asked_ns, kCautiousNs);
   const int64_t period_ns = *std::min_element(intervals_ns_.begin(), intervals_ns_.begin() + known);
-  return std::min(kLargestToleranceNs, period_ns / 4);
+  if (asked_ns == 0) return std::min(kCautiousNs, period_ns / 4);
+  // Below half the period no picture can match two of the other side, so that the first one that
+  // matches is the nearest.
+  return std::min(asked_ns, (period_ns - 1) / 2);
 }
 
 StereoFrame Pairer::Join(FramePtr left, FramePtr right) {

@@ -12,8 +12,10 @@ namespace vs {
 enum class Side : uint8_t { kLeft = 0, kRight = 1 };
 
 struct PairerOptions {
-  // Largest difference of the two capture times of a pair. 0 = automatic: a quarter of the picture
-  // period, at most 5 ms. Not used for cameras that count triggers.
+  // Largest difference of the two capture times of a pair, in effect up to just under half the
+  // picture period: beyond that a lost picture would join its neighbour to the wrong partner.
+  // 0 = automatic: a quarter of the picture period. Automatic, and as long as the period is
+  // unknown, it is at most 5 ms. Not used for cameras that count triggers.
   int64_t tolerance_ns = 0;
 };
 
@@ -40,8 +42,9 @@ struct PairStats {
 };
 
 // Finds the two pictures that show the same instant: by trigger number when both cameras count
-// triggers, else by capture time; never by the order of arrival. Each side may lose pictures at any
-// time. Plain logic without threads: the owner calls it under its own lock.
+// triggers (Frame::trigger: sim: and file: do; GigE Vision cameras do not tell it, so that theirs
+// are paired by time), else by capture time; never by the order of arrival. Each side may lose
+// pictures at any time. Plain logic without threads: the owner calls it under its own lock.
 class Pairer {
  public:
   static constexpr size_t kDepth = 4;  // pictures of one side that wait for the other

@@ -41,8 +41,8 @@ class StereoCamera final : public Block {
        .unit = "ms",
        .live = false,
        .doc = "Largest difference of the two capture times of a pair; 0 chooses a quarter of the "
-              "picture period, at most 5 ms. Cameras that count triggers are paired by that "
-              "count instead."}};
+              "picture period, at most 5 ms. Never more than half the picture period is used. "
+              "Cameras that count triggers are paired by that count instead."}};
 
   StereoCamera() {
     box_.OnAvailable([this] { Wake(); });

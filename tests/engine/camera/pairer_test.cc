@@ -95,7 +95,33 @@ TEST(Pairer, DerivesTheToleranceFromThePictureRate) {
   fast.Add(Side::kLeft, MakeFrame(1, 0));
   fast.Add(Side::kLeft, MakeFrame(2, 8 * kMs));
   EXPECT_EQ(fast.Stats().tolerance_ns, 2 * kMs);
-  EXPECT_EQ(Pairer({.tolerance_ns = 7 * kMs}).Stats().tolerance_ns, 7 * kMs);
+}
+
+TEST(Pairer, TakesTheGivenToleranceOnlyUpToHalfThePicturePeriod) {
+  Pairer pairer({.tolerance_ns = 40 * kMs});
+  EXPECT_EQ(pairer.Stats().tolerance_ns, 5 * kMs) << "while the period is unknown";
+  pairer.Add(Side::kLeft, MakeFrame(1, 0));
+  pairer.Add(Side::kLeft, MakeFrame(2, 60 * kMs));
+  EXPECT_EQ(pairer.Stats().tolerance_ns, 30 * kMs - 1);
+  pairer.Add(Side::kLeft, MakeFrame(3, 160 * kMs));
+  EXPECT_EQ(pairer.Stats().tolerance_ns, 30 * kMs - 1) << "the shortest interval counts";
+  Pairer narrow({.tolerance_ns = 7 * kMs});
+  narrow.Add(Side::kLeft, MakeFrame(1, 0));
+  narrow.Add(Side::kLeft, MakeFrame(2, kPeriodNs));
+  EXPECT_EQ(narrow.Stats().tolerance_ns, 7 * kMs);
+}
+
+TEST(Pairer, StaysRightAfterALossWithAToleranceLongerThanThePeriod) {
+  Pairer pairer({.tolerance_ns = 40 * kMs});
+  for (uint64_t number = 1; number <= 10; ++number) {
+    const int64_t instant_ns = static_cast<int64_t>(number) * kPeriodNs;
+    pairer.Add(Side::kLeft, MakeFrame(number, instant_ns));
+    if (number == 2) continue;  // lost on the way
+    const auto pair = pairer.Add(Side::kRight, MakeFrame(number, instant_ns));
+    ASSERT_TRUE(pair) << number;
+    EXPECT_EQ(pair->left->number, number);
+  }
+  EXPECT_EQ(pairer.Stats().left, (Unpaired{.no_counterpart = 1}));
 }
 
 TEST(Pairer, TellsTheSkew) {
@@ -127,7 +153,9 @@ TEST_P(PairerFuzz, NeverMakesAWrongPairAndCountsEveryPicture) {
   const bool count_triggers = rig.Chance(0.5);
   const double loss = 0.3 * (GetParam() % 4) / 3.0;
   const int64_t clock_error_ns = rig.Jitter();
-  Pairer pairer;
+  // Automatic, narrow, longer than the picture period, and as long as a user can ask for.
+  constexpr int64_t kTolerancesNs[] = {0, 5 * kMs, 40 * kMs, 1000 * kMs};
+  Pairer pairer({.tolerance_ns = kTolerancesNs[GetParam() / 4 % 4]});
   std::array<std::deque<FramePtr>, 2> network;  // under way to the host, in order per camera
   std::array<std::set<uint64_t>, 2> delivered;
   std::set<uint64_t> paired;
@@ -168,7 +196,7 @@ TEST_P(PairerFuzz, NeverMakesAWrongPairAndCountsEveryPicture) {
   EXPECT_GT(paired.size(), kTriggers / 3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, PairerFuzz, testing::Range(1u, 41u));
+INSTANTIATE_TEST_SUITE_P(Seeds, PairerFuzz, testing::Range(1u, 81u));
 
 }  // namespace
 }  // namespace vs
