@@ -5,6 +5,7 @@
 #include "client/cli/command.h"
 #include "client/cli/sequence_text.h"
 #include "client/cli/words.h"
+#include "client/values.h"
 
 namespace vs::cli {
 namespace {
@@ -69,6 +70,19 @@ Result<void> Validate(Session& session, const std::vector<std::string>& ids,
   return tl::unexpected(error);
 }
 
+// What the sources say of their pictures.
+void PrintReadings(const v1::SequenceState& state) {
+  Table table({"BLOCK", "READING", ">VALUE"});
+  bool any = false;
+  for (const v1::BlockState& block : state.blocks()) {
+    for (const v1::Reading& reading : block.readings()) {
+      table.Add({block.block(), reading.name(), client::ToText(reading.value())});
+      any = true;
+    }
+  }
+  if (any) table.Print("");
+}
+
 void PrintState(const v1::SequenceState& state) {
   PrintLine(state.sequence() + ": " + RunStateWord(state.state()) +
             (state.revision() == 0 ? "" : ", revision " + std::to_string(state.revision())));
@@ -85,6 +99,7 @@ void PrintState(const v1::SequenceState& state) {
                  std::to_string(block.skipped()), block.last_error()});
     }
     table.Print("It has no blocks.");
+    PrintReadings(state);
   }
   if (state.has_last_error()) {
     const v1::SequenceError& error = state.last_error();

@@ -6,12 +6,28 @@
 #include "engine/base/str.h"
 
 namespace vs {
+namespace {
+
+int64_t Count(uint64_t count) { return static_cast<int64_t>(count); }
+
+}  // namespace
 
 std::string_view CameraStateName(CameraState state) {
   static constexpr std::array<std::string_view, 6> kNames = {"closed",    "opening", "idle",
                                                              "streaming", "stalled", "lost"};
   const auto index = static_cast<size_t>(state);
   return index < kNames.size() ? kNames[index] : "unknown";
+}
+
+SourceReport ReportOf(const CameraStats& stats) {
+  SourceReport report;
+  report.problem = stats.last_error;
+  const bool silent = stats.state == CameraState::kStalled || stats.state == CameraState::kLost;
+  if (report.problem.empty() && silent) report.problem = "no pictures come";
+  report.readings = {{"frames", Count(stats.frames)},
+                     {"incomplete", Count(stats.incomplete)},
+                     {"lost", Count(stats.lost)}};
+  return report;
 }
 
 CameraDrivers& CameraDrivers::Get() {

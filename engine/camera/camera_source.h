@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/base/source_report.h"
 #include "engine/base/status.h"
 #include "engine/camera/camera_uri.h"
 #include "engine/image/frame.h"
@@ -63,6 +64,9 @@ struct CameraStats {
   std::string model;             // vendor and model, once known
   std::string serial;
 };
+
+// The camera's problem, and how many of its pictures came or did not.
+SourceReport ReportOf(const CameraStats& stats);
 
 // Takes each picture, on the camera's own thread. May block a recorded source (so that no picture
 // is lost), must return at once for a live one.

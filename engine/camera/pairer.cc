@@ -30,14 +30,14 @@ void Pairer::Queue::Push(FramePtr frame) {
 std::optional<StereoFrame> Pairer::Add(Side side, FramePtr frame) {
   const Side other = side == Side::kLeft ? Side::kRight : Side::kLeft;
   if (!InOrder(side, *frame)) {
-    ++UnpairedOf(side).out_of_order;
+    CountUnpaired(side, &Unpaired::out_of_order);
     return std::nullopt;
   }
   Queue& others = waiting_[Index(other)];
   while (others.count > 0) {
     const int order = Compare(*others.Oldest(), *frame);
     if (order > 0) {
-      ++UnpairedOf(side).no_counterpart;
+      CountUnpaired(side, &Unpaired::no_counterpart);
       return std::nullopt;
     }
     FramePtr oldest = others.Pop();
@@ -45,15 +45,22 @@ std::optional<StereoFrame> Pairer::Add(Side side, FramePtr frame) {
       return side == Side::kLeft ? Join(std::move(frame), std::move(oldest))
                                  : Join(std::move(oldest), std::move(frame));
     }
-    ++UnpairedOf(other).no_counterpart;
+    CountUnpaired(other, &Unpaired::no_counterpart);
   }
   Queue& own = waiting_[Index(side)];
   if (own.count == kDepth) {
     own.Pop();
-    ++UnpairedOf(side).overflow;
+    CountUnpaired(side, &Unpaired::overflow);
   }
   own.Push(std::move(frame));
   return std::nullopt;
+}
+
+void Pairer::CountUnpaired(Side side, uint64_t Unpaired::*reason) {
+  const bool left = side == Side::kLeft;
+  Unpaired& unpaired = left ? stats_.left : stats_.right;
+  ++(unpaired.*reason);
+  ++(left ? stats_.left_alone : stats_.right_alone);
 }
 
 bool Pairer::InOrder(Side side, const Frame& frame) {
@@ -88,6 +95,8 @@ StereoFrame Pairer::Join(FramePtr left, FramePtr right) {
   StereoFrame pair;
   pair.number = left->number;
   pair.skew_ns = right->capture_ns - left->capture_ns;
+  stats_.left_alone = 0;
+  stats_.right_alone = 0;
   stats_.by_trigger = CountTriggers(*left, *right);
   skews_ns_[stats_.pairs++ % kSkews] = pair.skew_ns < 0 ? -pair.skew_ns : pair.skew_ns;
   pair.left = std::move(left);

@@ -33,6 +33,9 @@ struct PairStats {
   uint64_t pairs = 0;
   Unpaired left;
   Unpaired right;
+  // Pictures without a partner since the newest pair.
+  uint64_t left_alone = 0;
+  uint64_t right_alone = 0;
   bool by_trigger = false;   // how the newest pair was found: by trigger number, else by time
   int64_t tolerance_ns = 0;  // in effect for pairing by time
   // Of abs(right capture - left capture) over the last pairs (at most 256).
@@ -75,7 +78,7 @@ class Pairer {
   static constexpr size_t kIntervals = 16;
 
   static size_t Index(Side side) { return static_cast<size_t>(side); }
-  Unpaired& UnpairedOf(Side side) { return side == Side::kLeft ? stats_.left : stats_.right; }
+  void CountUnpaired(Side side, uint64_t Unpaired::*reason);
   bool InOrder(Side side, const Frame& frame);
   // Negative: `a` is the older one, its counterpart was lost; 0: they belong together.
   int Compare(const Frame& a, const Frame& b) const;

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "engine/base/source_report.h"
 #include "engine/base/status.h"
 #include "engine/camera/camera_source.h"
 #include "engine/camera/pairer.h"
@@ -20,6 +21,11 @@ struct StereoStats {
   CameraStats right;
   PairStats pairing;
 };
+
+// The problem of a camera, or why two good cameras make no pairs; and the figures of the pairing:
+// how the partners were found, how far apart in time they are, and the unpaired pictures of each
+// side by reason.
+SourceReport ReportOf(const StereoStats& stats);
 
 // Pairs of pictures of the same instant, from two cameras, from files or simulated. Calls are
 // thread-safe.

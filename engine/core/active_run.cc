@@ -320,12 +320,25 @@ RunStats ActiveRun::Stats() const {
     block.p50_ns = Percentile(durations, 50);
     block.p99_ns = Percentile(durations, 99);
   }
-  for (int i = 0; i <= last_source_; ++i) stats.dropped += sequence_->nodes()[i].block->Dropped();
+  AskSources(&stats);
   stats.frames_per_second = RatePerSecond(completions_.All(), clock_.MonotonicNs());
   stats.latency_p50_ns = Percentile(latencies_.All(), 50);
   stats.latency_p99_ns = Percentile(latencies_.All(), 99);
   stats.parameter_revision = parameters_.Revision();
   return stats;
+}
+
+void ActiveRun::AskSources(RunStats* stats) const {
+  for (int i = 0; i <= last_source_; ++i) {
+    const Block& source = *sequence_->nodes()[i].block;
+    stats->dropped += source.Dropped();
+    SourceReport report = source.Report();
+    BlockStats& block = stats->blocks[i];
+    block.readings = std::move(report.readings);
+    if (report.problem.empty()) continue;
+    if (stats->last_error.empty()) stats->last_error = Str(block.id, ": ", report.problem);
+    if (block.last_error.empty()) block.last_error = std::move(report.problem);
+  }
 }
 
 std::string_view RunStateName(RunState state) {

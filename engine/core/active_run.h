@@ -69,6 +69,8 @@ class ActiveRun final : public Run, public std::enable_shared_from_this<ActiveRu
   size_t TaskRoom() const { return counters_.size() + 1; }  // each block once, and an entry
   Status StartBlocks();
   void StopBlocks();
+  // What the sources say of themselves; a failed run has the first word.
+  void AskSources(RunStats* stats) const;
   void Wake();
 
   void ExecuteEntry();

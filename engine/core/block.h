@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/source_report.h"
 #include "engine/base/status.h"
 #include "engine/core/environment.h"
 #include "engine/core/frame_context.h"
@@ -46,6 +47,9 @@ class Block {
   virtual bool Ready() { return true; }
   // Of a source: pictures that never entered the sequence because it was busy. Thread-safe.
   virtual uint64_t Dropped() const { return 0; }
+  // Of a source: whether pictures come, and if not, why. Empty before Start() and after Stop().
+  // Thread-safe.
+  virtual SourceReport Report() const { return {}; }
 
   const std::vector<PortBase*>& inputs() const { return inputs_; }
   const std::vector<PortBase*>& outputs() const { return outputs_; }

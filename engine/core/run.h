@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/source_report.h"
 #include "engine/base/status.h"
 #include "engine/core/sequence.h"
 
@@ -23,16 +24,18 @@ struct BlockStats {
   uint64_t runs = 0;
   uint64_t skipped = 0;    // frames in which a required input had no value
   uint64_t errors = 0;     // of the runs
-  std::string last_error;  // empty when the last run was good
+  std::string last_error;  // empty when the last run was good and, of a source, all is well
   int64_t last_ns = 0;     // duration of the last run
   int64_t p50_ns = 0;      // over the last 256 runs
   int64_t p99_ns = 0;
+  std::vector<Reading> readings;  // of a source: see SourceReport
 };
 
 struct RunStats {
   RunState state = RunState::kStopped;
-  std::string last_error;  // "match: ..." with the block's id; empty when the last frame was good
-  uint64_t frames = 0;     // completed
+  // "match: ..." with the block's id; empty when the last frame was good and all sources are well.
+  std::string last_error;
+  uint64_t frames = 0;         // completed
   uint64_t failed_frames = 0;  // of these, with an error in some block
   uint64_t dropped = 0;        // never entered, the sequence was busy (sum of the sources)
   int frames_in_flight = 0;

@@ -3,8 +3,6 @@
 #include <utility>
 #include <variant>
 
-#include "engine/base/str.h"
-
 namespace vs {
 
 std::vector<CameraUse> CamerasOf(const Run& run, const CameraHub& cameras) {
@@ -31,22 +29,6 @@ std::string TroubleOf(const CameraStats& stats) {
     default:
       return "";
   }
-}
-
-std::string CameraTrouble(const Run& run, const CameraHub& cameras) {
-  const std::vector<CameraHub::Entry> open = cameras.List();
-  if (open.empty()) return "";
-  for (const CameraUse& use : CamerasOf(run, cameras)) {
-    for (const CameraHub::Entry& entry : open) {
-      const Result<CameraUri> uri = CameraUri::Parse(entry.uri);
-      if (!uri || uri->scheme != use.camera.scheme || uri->address != use.camera.address) continue;
-      const std::string trouble = TroubleOf(entry.stats);
-      if (!trouble.empty()) {
-        return Str(use.block, ": camera ", use.camera.ToString(), ": ", trouble);
-      }
-    }
-  }
-  return "";
 }
 
 }  // namespace vs

@@ -21,8 +21,4 @@ std::vector<CameraUse> CamerasOf(const Run& run, const CameraHub& cameras);
 // to.
 std::string TroubleOf(const CameraStats& stats);
 
-// The first camera of a run that gives no pictures: "cameras: camera gev:21000001: it does not
-// answer", with the id of the block in front; empty when all give some.
-std::string CameraTrouble(const Run& run, const CameraHub& cameras);
-
 }  // namespace vs

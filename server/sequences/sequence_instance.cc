@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "engine/base/str.h"
-#include "server/sequences/camera_use.h"
 
 namespace vs {
 namespace {
@@ -76,11 +75,6 @@ SequenceStatus SequenceInstance::Snapshot() {
   if (run_now != nullptr) {
     status.stats = run_now->Stats();
     status.revision = run_now->sequence().revision();
-    // Without pictures no block runs, so none can fail.
-    if (status.stats.state == RunState::kRunning && status.stats.last_error.empty() &&
-        environment_.cameras != nullptr) {
-      status.stats.last_error = CameraTrouble(*run_now, *environment_.cameras);
-    }
   }
   MutexLock lock(mutex_);
   if (run_now != nullptr) {

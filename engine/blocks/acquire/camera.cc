@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "engine/base/mailbox.h"
+#include "engine/base/mutex.h"
 #include "engine/camera/camera_hub.h"
 #include "engine/core/block.h"
 
@@ -37,9 +38,12 @@ class Camera final : public Block {
       return InvalidArgument("set address to a camera's address, for example gev:21000001");
     }
     VS_ASSIGN_OR_RETURN(const CameraUri uri, CameraUri::Parse(*address));
-    VS_ASSIGN_OR_RETURN(camera_, environment().cameras->Acquire(uri));
-    box_.Reopen(camera_->Recorded() ? Box::Policy::kEvery : Box::Policy::kLatest);
-    return camera_->Start([this](FramePtr taken) { box_.Put(std::move(taken)); });
+    VS_ASSIGN_OR_RETURN(auto camera, environment().cameras->Acquire(uri));
+    box_.Reopen(camera->Recorded() ? Box::Policy::kEvery : Box::Policy::kLatest);
+    VS_RETURN_IF_ERROR(camera->Start([this](FramePtr taken) { box_.Put(std::move(taken)); }));
+    MutexLock lock(mutex_);
+    camera_ = std::move(camera);
+    return {};
   }
 
   bool Ready() override { return box_.Available(); }
@@ -57,15 +61,25 @@ class Camera final : public Block {
 
   void Stop() override {
     box_.Close();
-    if (camera_ != nullptr) camera_->Stop();
-    camera_.reset();
+    std::shared_ptr<CameraSource> ended;
+    {
+      MutexLock lock(mutex_);
+      ended = std::exchange(camera_, nullptr);
+    }
+    if (ended != nullptr) ended->Stop();
   }
 
   uint64_t Dropped() const override { return box_.Dropped(); }
 
+  SourceReport Report() const override {
+    MutexLock lock(mutex_);
+    return camera_ == nullptr ? SourceReport() : ReportOf(camera_->Stats());
+  }
+
  private:
   Box box_;
-  std::shared_ptr<CameraSource> camera_;
+  mutable Mutex mutex_;  // Report comes on another thread
+  std::shared_ptr<CameraSource> camera_ VS_GUARDED_BY(mutex_);
 };
 
 VS_REGISTER_BLOCK(Camera, {.category = "Acquire",

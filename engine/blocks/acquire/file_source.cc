@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "engine/base/mailbox.h"
+#include "engine/base/mutex.h"
 #include "engine/camera/file_pair_source.h"
 #include "engine/core/block.h"
 
@@ -124,9 +125,12 @@ class FileSource final : public Block {
                                            .cy_px = *center_y_px,
                                            .principal_offset_px = *offset_px};
     }
-    source_ = MakeFilePairSource(std::move(options));
+    auto source = MakeFilePairSource(std::move(options));
     box_.Reopen(Box::Policy::kEvery);
-    return source_->Start([this](StereoFramePtr read) { box_.Put(std::move(read)); });
+    VS_RETURN_IF_ERROR(source->Start([this](StereoFramePtr read) { box_.Put(std::move(read)); }));
+    MutexLock lock(mutex_);
+    source_ = std::move(source);
+    return {};
   }
 
   bool Ready() override { return box_.Available(); }
@@ -143,15 +147,25 @@ class FileSource final : public Block {
 
   void Stop() override {
     box_.Close();
-    if (source_ != nullptr) source_->Stop();
-    source_.reset();
+    std::unique_ptr<StereoSource> ended;
+    {
+      MutexLock lock(mutex_);
+      ended = std::exchange(source_, nullptr);
+    }
+    if (ended != nullptr) ended->Stop();
   }
 
   uint64_t Dropped() const override { return box_.Dropped(); }
 
+  SourceReport Report() const override {
+    MutexLock lock(mutex_);
+    return source_ == nullptr ? SourceReport() : ReportOf(source_->Stats());
+  }
+
  private:
   Box box_;
-  std::unique_ptr<StereoSource> source_;
+  mutable Mutex mutex_;  // Report comes on another thread
+  std::unique_ptr<StereoSource> source_ VS_GUARDED_BY(mutex_);
 };
 
 VS_REGISTER_BLOCK(FileSource,

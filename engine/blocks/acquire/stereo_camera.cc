@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/base/mailbox.h"
+#include "engine/base/mutex.h"
 #include "engine/camera/camera_hub.h"
 #include "engine/camera/stereo_source.h"
 #include "engine/core/block.h"
@@ -51,10 +52,13 @@ class StereoCamera final : public Block {
   Status Start() override {
     VS_ASSIGN_OR_RETURN(auto left_camera, Open(left));
     VS_ASSIGN_OR_RETURN(auto right_camera, Open(right));
-    source_ = MakeCameraPair(std::move(left_camera), std::move(right_camera),
-                             {.tolerance_ns = static_cast<int64_t>(*tolerance_ms * 1e6)});
-    box_.Reopen(source_->Recorded() ? Box::Policy::kEvery : Box::Policy::kLatest);
-    return source_->Start([this](StereoFramePtr taken) { box_.Put(std::move(taken)); });
+    auto source = MakeCameraPair(std::move(left_camera), std::move(right_camera),
+                                 {.tolerance_ns = static_cast<int64_t>(*tolerance_ms * 1e6)});
+    box_.Reopen(source->Recorded() ? Box::Policy::kEvery : Box::Policy::kLatest);
+    VS_RETURN_IF_ERROR(source->Start([this](StereoFramePtr taken) { box_.Put(std::move(taken)); }));
+    MutexLock lock(mutex_);
+    source_ = std::move(source);
+    return {};
   }
 
   bool Ready() override { return box_.Available(); }
@@ -73,11 +77,20 @@ class StereoCamera final : public Block {
 
   void Stop() override {
     box_.Close();
-    if (source_ != nullptr) source_->Stop();
-    source_.reset();
+    std::unique_ptr<StereoSource> ended;
+    {
+      MutexLock lock(mutex_);
+      ended = std::exchange(source_, nullptr);
+    }
+    if (ended != nullptr) ended->Stop();
   }
 
   uint64_t Dropped() const override { return box_.Dropped(); }
+
+  SourceReport Report() const override {
+    MutexLock lock(mutex_);
+    return source_ == nullptr ? SourceReport() : ReportOf(source_->Stats());
+  }
 
  private:
   Result<std::shared_ptr<CameraSource>> Open(const Param<std::string>& address) const {
@@ -96,7 +109,8 @@ class StereoCamera final : public Block {
   }
 
   Box box_;
-  std::unique_ptr<StereoSource> source_;
+  mutable Mutex mutex_;  // Report comes on another thread
+  std::unique_ptr<StereoSource> source_ VS_GUARDED_BY(mutex_);
 };
 
 VS_REGISTER_BLOCK(StereoCamera,

@@ -184,6 +184,7 @@ TEST_P(EveryBlock, CanBeDroppedAtAnyMoment) {
   harness.block().Stop();
   harness.block().Stop();
   harness.block().Dropped();
+  EXPECT_EQ(harness.block().Report().problem, "");
 }
 
 TEST_P(EveryBlock, SaysWhatItLacksInAnEmptyHouse) {

@@ -84,6 +84,22 @@ TEST_F(FileSourceBlock, ReadsNoPicturesOutsideTheAllowedFolders) {
   EXPECT_EQ(Next()->left->image.Row(0)[0], 1);
 }
 
+TEST_F(FileSourceBlock, ReportsThePicturesThatItLeftOut) {
+  for (const char* name : {"a_left.png", "a_right.png", "b_left.png"}) {
+    WriteGrey(folder_ / name, 1);
+  }
+  WriteText(folder_ / "b_right.png", "no picture");
+  ASSERT_TRUE(block_.Set("folder", folder_.path().string()).ok());
+  ASSERT_TRUE(block_.Start().ok());
+  ASSERT_NE(Next(), nullptr);
+  ASSERT_TRUE(WaitUntil([&] { return !block_.block().Report().problem.empty(); }));
+  const SourceReport report = block_.block().Report();
+  EXPECT_THAT(report.problem, HasSubstr("right camera: "));
+  EXPECT_THAT(report.problem, HasSubstr("b_right.png is not a readable picture"));
+  EXPECT_THAT(report.readings, testing::Contains(Reading{"right_incomplete", int64_t{1}}));
+  EXPECT_THAT(report.readings, testing::Contains(Reading{"pairs", int64_t{1}}));
+}
+
 TEST_F(FileSourceBlock, SaysWhatIsWrongWithTheFolder) {
   EXPECT_THAT(block_.Start().message(), HasSubstr("set folder"));
   ASSERT_TRUE(block_.Set("folder", folder_.path().string() + "/nowhere").ok());

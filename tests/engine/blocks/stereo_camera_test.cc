@@ -87,6 +87,17 @@ TEST_F(StereoCameraBlock, WakesTheSequenceForEachPair) {
   EXPECT_EQ(woken, 2);
 }
 
+TEST_F(StereoCameraBlock, ReportsItsPairingWhileItRuns) {
+  EXPECT_TRUE(block_.block().Report().readings.empty());
+  ASSERT_TRUE(block_.Start().ok());
+  for (int i = 1; i <= 16; ++i) cameras["left"]->Deliver(i, i * kPeriodNs);
+  const SourceReport report = block_.block().Report();
+  EXPECT_THAT(report.problem, HasSubstr("right camera: no pictures come"));
+  EXPECT_THAT(report.readings, testing::Contains(Reading{"left_overflow", int64_t{12}}));
+  block_.block().Stop();
+  EXPECT_TRUE(block_.block().Report().readings.empty());
+}
+
 TEST_F(StereoCameraBlock, LetsGoOfItsCamerasWhenItStops) {
   ASSERT_TRUE(block_.Start().ok());
   EXPECT_EQ(hub_.List().size(), 2u);

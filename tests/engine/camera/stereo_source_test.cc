@@ -105,5 +105,73 @@ TEST(CameraPair, StopFreesARecordedCameraThatWaitsForTheOther) {
   EXPECT_EQ(collected.Count(), 0u);
 }
 
+TEST(StereoReport, TellsThePairingAndTheUnpairedPicturesOfEachSideByReason) {
+  StereoStats stats;
+  stats.left.frames = 20;
+  stats.right.incomplete = 3;
+  stats.pairing = {.pairs = 12,
+                   .left = {.no_counterpart = 1, .overflow = 2, .out_of_order = 3},
+                   .right = {.no_counterpart = 4, .overflow = 5, .out_of_order = 6},
+                   .tolerance_ns = 5'000'000,
+                   .skew_p50_ns = 125'000,
+                   .skew_p99_ns = 250'000,
+                   .skew_max_ns = 500'000};
+  const SourceReport report = ReportOf(stats);
+  EXPECT_EQ(report.problem, "");
+  EXPECT_THAT(
+      report.readings,
+      testing::ElementsAre(
+          Reading{"left_frames", int64_t{20}}, Reading{"left_incomplete", int64_t{0}},
+          Reading{"left_lost", int64_t{0}}, Reading{"right_frames", int64_t{0}},
+          Reading{"right_incomplete", int64_t{3}}, Reading{"right_lost", int64_t{0}},
+          Reading{"pairs", int64_t{12}}, Reading{"left_no_counterpart", int64_t{1}},
+          Reading{"left_overflow", int64_t{2}}, Reading{"left_out_of_order", int64_t{3}},
+          Reading{"right_no_counterpart", int64_t{4}}, Reading{"right_overflow", int64_t{5}},
+          Reading{"right_out_of_order", int64_t{6}}, Reading{"by_trigger", false},
+          Reading{"tolerance_ms", 5.0}, Reading{"skew_p50_ms", 0.125}, Reading{"skew_p99_ms", 0.25},
+          Reading{"skew_max_ms", 0.5}));
+}
+
+TEST(StereoReport, NamesTheCameraThatHasAProblem) {
+  StereoStats stats;
+  stats.right.last_error = "the camera does not answer";
+  EXPECT_EQ(ReportOf(stats).problem, "right camera: the camera does not answer");
+  stats.left.state = CameraState::kStalled;
+  EXPECT_EQ(ReportOf(stats).problem, "left camera: no pictures come");
+}
+
+TEST(StereoReport, NamesTheCameraThatIsSilentThoughItClaimsToBeWell) {
+  const auto left = Camera("script:left");
+  const auto right = Camera("script:right");
+  const auto stereo = MakeCameraPair(left, right);
+  Collected collected;
+  ASSERT_TRUE(stereo->Start(collected.Sink()).ok());
+  // Four wait, then twelve are alone.
+  for (int i = 1; i <= 15; ++i) left->Deliver(i, i * kPeriodNs);
+  EXPECT_EQ(ReportOf(stereo->Stats()).problem, "");
+  left->Deliver(16, 16 * kPeriodNs);
+  EXPECT_THAT(ReportOf(stereo->Stats()).problem,
+              testing::StartsWith("right camera: no pictures come"));
+  right->Deliver(16, 16 * kPeriodNs);
+  EXPECT_EQ(ReportOf(stereo->Stats()).problem, "") << "a pair was found";
+  for (int i = 17; i <= 32; ++i) right->Deliver(i, i * kPeriodNs);
+  EXPECT_THAT(ReportOf(stereo->Stats()).problem,
+              testing::StartsWith("left camera: no pictures come"));
+}
+
+TEST(StereoReport, SaysThatTheCamerasAreNotTriggeredTogether) {
+  const auto left = Camera("script:left");
+  const auto right = Camera("script:right");
+  const auto stereo = MakeCameraPair(left, right);
+  Collected collected;
+  ASSERT_TRUE(stereo->Start(collected.Sink()).ok());
+  for (int i = 1; i <= 8; ++i) {
+    left->Deliver(i, i * kPeriodNs);
+    right->Deliver(i, i * kPeriodNs + kPeriodNs / 2);
+  }
+  EXPECT_EQ(collected.Count(), 0u);
+  EXPECT_THAT(ReportOf(stereo->Stats()).problem, testing::HasSubstr("trigger both together"));
+}
+
 }  // namespace
 }  // namespace vs::test

@@ -68,6 +68,32 @@ TEST_F(SchedulerFaultTest, AnErrorSkipsWhatIsBehindItForThisFrame) {
                                   "some 4 0 0"));
 }
 
+TEST_F(SchedulerFaultTest, TellsWhyASourceIsSilent) {
+  MakeWorkers(1);
+  ProbeOf("source").ready = [] { return false; };
+  ProbeOf("source").report = [] {
+    return SourceReport{"no pictures come", {{"lost", int64_t{3}}}};
+  };
+  const auto run = Start(ChainSpec("line", {"step"}));
+  const RunStats stats = run->Stats();
+  EXPECT_EQ(stats.state, RunState::kRunning);
+  EXPECT_EQ(stats.last_error, "source: no pictures come");
+  EXPECT_EQ(stats.blocks[0].last_error, "no pictures come");
+  EXPECT_THAT(stats.blocks[0].readings, ElementsAre(Reading{"lost", int64_t{3}}));
+  EXPECT_TRUE(stats.blocks[1].readings.empty());
+}
+
+TEST_F(SchedulerFaultTest, AFailedRunHasTheFirstWordBeforeASourcesProblem) {
+  MakeWorkers(1);
+  LimitFrames("source", 1);
+  ProbeOf("source").report = [] { return SourceReport{"few pictures come", {}}; };
+  ProbeOf("bad").run = [](const StepRun&) { return InvalidArgument("too dark"); };
+  const auto run = Start(ChainSpec("line", {"bad"}));
+  ASSERT_TRUE(WaitForFrames(*run, 1));
+  EXPECT_EQ(run->Stats().last_error, "bad: too dark");
+  EXPECT_EQ(run->Stats().blocks[0].last_error, "few pictures come");
+}
+
 TEST_F(SchedulerFaultTest, NamesTheBlockOfTheLastError) {
   MakeWorkers(1);
   LimitFrames("source", 1);

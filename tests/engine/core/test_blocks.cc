@@ -58,6 +58,10 @@ class TestSource final : public ProbedBlock {
     return Status();
   }
   uint64_t Dropped() const override { return 7; }
+  SourceReport Report() const override {
+    const Probe* hooks = Hooks();
+    return hooks != nullptr && hooks->report ? hooks->report() : SourceReport();
+  }
 
  private:
   int64_t count_ = 0;

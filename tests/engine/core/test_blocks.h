@@ -24,6 +24,7 @@ struct StepRun {
 struct Probe {
   std::function<Status()> start;
   std::function<bool()> ready;                // of a TestSource
+  std::function<SourceReport()> report;       // of a TestSource
   std::function<Status(const StepRun&)> run;  // a = the count, for a TestSource
   std::function<void()> stop;
   std::function<void()> check;                           // of a TestLimits, in CheckParams()
