@@ -27,10 +27,13 @@ class FileCamera final : public CameraSource {
     if (player_.Playing()) return FailedPrecondition("this folder is already being played");
     VS_ASSIGN_OR_RETURN(files_, FindFiles(folder_, pattern_));
     VS_RETURN_IF_ERROR(CheckReadable());
+    unreadable_in_a_row_ = 0;
     player_.Start(files_.size(), play_,
                   [this, sink = std::move(sink)](size_t index, uint64_t number) {
-                    if (FramePtr frame = Read(index, number)) sink(std::move(frame));
-                    return true;
+                    FramePtr frame = Read(index, number);
+                    const bool readable = frame != nullptr;
+                    if (readable) sink(std::move(frame));
+                    return GoOn(readable);
                   });
     return {};
   }
@@ -91,11 +94,21 @@ class FileCamera final : public CameraSource {
     return frame;
   }
 
+  // False after a whole round without a readable picture, which would else go on for ever.
+  bool GoOn(bool readable) {
+    unreadable_in_a_row_ = readable ? 0 : unreadable_in_a_row_ + 1;
+    if (unreadable_in_a_row_ < files_.size()) return true;
+    MutexLock lock(mutex_);
+    stats_.last_error += "; ended, for no picture can be read any more";
+    return false;
+  }
+
   const fs::path folder_;
   const std::string pattern_;
   const PlayOptions play_;
   const SystemClock clock_;
   std::vector<fs::path> files_;
+  size_t unreadable_in_a_row_ = 0;
   mutable Mutex mutex_;
   CameraStats stats_ VS_GUARDED_BY(mutex_);
   Player player_;

@@ -35,12 +35,12 @@ class FilePairSource final : public StereoSource {
     if (player_.Playing()) return FailedPrecondition("this folder is already being played");
     VS_ASSIGN_OR_RETURN(pairs_, FindFilePairs(options_));
     VS_RETURN_IF_ERROR(CheckReadable());
+    unusable_in_a_row_ = 0;
     player_.Start(pairs_.size(), options_.play,
                   [this, sink = std::move(sink)](size_t index, uint64_t number) {
-                    if (auto pair = Read(pairs_[index], number)) {
-                      sink(std::make_shared<StereoFrame>(std::move(*pair)));
-                    }
-                    return true;
+                    auto pair = Read(pairs_[index], number);
+                    if (pair) sink(std::make_shared<StereoFrame>(std::move(*pair)));
+                    return GoOn(pair.has_value());
                   });
     return {};
   }
@@ -136,9 +136,23 @@ class FilePairSource final : public StereoSource {
     return std::nullopt;
   }
 
+  // False after a whole round without a usable pair, which would else go on for ever.
+  bool GoOn(bool usable) {
+    unusable_in_a_row_ = usable ? 0 : unusable_in_a_row_ + 1;
+    if (unusable_in_a_row_ < pairs_.size()) return true;
+    MutexLock lock(mutex_);
+    for (CameraStats* side : {&stats_.left, &stats_.right}) {
+      if (!side->last_error.empty()) {
+        side->last_error += "; ended, for no pair can be used any more";
+      }
+    }
+    return false;
+  }
+
   const FilePairOptions options_;
   const SystemClock clock_;
   std::vector<FilePair> pairs_;
+  size_t unusable_in_a_row_ = 0;
   mutable Mutex mutex_;
   StereoStats stats_ VS_GUARDED_BY(mutex_);
   Player player_;

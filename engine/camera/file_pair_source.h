@@ -32,8 +32,8 @@ struct FilePairOptions {
 
 // Plays the pairs of a folder, each exactly once (or over and over), in counting order. A pair with
 // an unreadable file, or whose two pictures differ in size, is left out, counted as incomplete on
-// the side at fault and named in that side's last error. Start fails with NOT_FOUND when there is
-// no pair, INVALID_ARGUMENT when none can be read.
+// the side at fault and named in that side's last error; a whole round of them ends the play. Start
+// fails with NOT_FOUND when there is no pair, INVALID_ARGUMENT when none can be read.
 std::unique_ptr<StereoSource> MakeFilePairSource(FilePairOptions options);
 
 }  // namespace vs

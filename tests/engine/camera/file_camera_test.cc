@@ -8,6 +8,7 @@
 #include "engine/camera/camera_source.h"
 #include "tests/engine/camera/picture_files.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/wait_until.h"
 
 namespace vs::test {
 namespace {
@@ -102,6 +103,20 @@ TEST(FileCamera, SkipsCountsAndNamesUnreadableFiles) {
   EXPECT_EQ(frames[1]->number, 4u) << "a gap tells that pictures are missing";
   EXPECT_EQ(camera->Stats().incomplete, 2u);
   EXPECT_THAT(camera->Stats().last_error, HasSubstr("3.png is not a readable picture"));
+}
+
+TEST(FileCamera, StopsLoopingWhenNoPictureIsLeft) {
+  TempFolder folder;
+  WriteGrey(folder / "a.pgm", 1);
+  WriteGrey(folder / "b.pgm", 2);
+  const auto camera = Open("file:" + folder.path().string() + "?loop=true");
+  ASSERT_TRUE(camera->Start([](const FramePtr&) {}).ok());
+  std::filesystem::remove(folder / "a.pgm");
+  ASSERT_TRUE(WaitUntil([&] { return camera->Stats().incomplete > 0; }));
+  EXPECT_EQ(camera->Stats().state, CameraState::kStreaming) << "one picture is left";
+  std::filesystem::remove(folder / "b.pgm");
+  ASSERT_TRUE(WaitUntil([&] { return camera->Stats().state == CameraState::kIdle; }));
+  EXPECT_THAT(camera->Stats().last_error, HasSubstr("no picture can be read any more"));
 }
 
 TEST(FileCamera, SaysWhyItCannotStart) {

@@ -11,6 +11,7 @@
 #include "engine/base/mailbox.h"
 #include "tests/engine/camera/picture_files.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/wait_until.h"
 
 namespace vs::test {
 namespace {
@@ -163,6 +164,23 @@ TEST(FilePairSource, PatternsDoNotLeadOutOfTheFolder) {
     options.visible_pattern = outside;
     EXPECT_EQ(StartError(options).code(), StatusCode::kInvalidArgument) << outside;
   }
+}
+
+TEST(FilePairSource, StopsLoopingWhenNoPairIsLeft) {
+  TempFolder folder;
+  for (const char* name : {"left1.png", "right1.png", "left2.png", "right2.png"}) {
+    WriteGrey(folder / name, 1);
+  }
+  const auto source = MakeFilePairSource({.folder = folder.path(), .play = {.loop = true}});
+  ASSERT_TRUE(source->Start([](const StereoFramePtr&) {}).ok());
+  std::filesystem::remove(folder / "left1.png");
+  ASSERT_TRUE(WaitUntil([&] { return source->Stats().left.incomplete > 0; }));
+  EXPECT_EQ(source->Stats().left.state, CameraState::kStreaming) << "one pair is left";
+  std::filesystem::remove(folder / "right2.png");
+  ASSERT_TRUE(WaitUntil([&] { return source->Stats().right.state == CameraState::kIdle; }));
+  const StereoStats stats = source->Stats();
+  EXPECT_THAT(stats.left.last_error + stats.right.last_error,
+              HasSubstr("no pair can be used any more"));
 }
 
 TEST(FilePairSource, SaysWhyItCannotStart) {
