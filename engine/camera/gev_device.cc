@@ -341,7 +341,8 @@ void GevDevice::CheckSocketBuffer() {
   socket_checked_ = true;
   const int asked_bytes = options_.stream.socket_buffer_bytes;
   const int got_bytes = session_->stream()->SocketBufferBytes();
-  if (got_bytes < asked_bytes && !std::exchange(socket_warned_, true)) {
+  const bool known = got_bytes > 0;
+  if (known && got_bytes < asked_bytes && !std::exchange(socket_warned_, true)) {
     LogWarn("camera", Str(options_.uri, ": the system gave its socket a buffer of ", got_bytes,
                           " bytes instead of ", asked_bytes,
                           ", so pictures may be lost; raise net.core.rmem_max, for example "

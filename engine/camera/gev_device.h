@@ -60,7 +60,8 @@ class GevDevice {
 
   Status Open();
   Result<FoundCamera> Locate();
-  // Until the camera is lost (then: why), or nobody needs it.
+  // Until the camera is lost (then: why), or this object goes: a camera that was opened, if only
+  // for one call, stays ours as long as somebody holds it.
   Status Serve();
   Status BeginStream();
   void EndStream(bool answering);
