@@ -20,6 +20,10 @@ constexpr milliseconds kLastRetry{2000};
 constexpr milliseconds kRetryForControl{500};
 constexpr milliseconds kQuietForControl{3500};
 constexpr int kQuietEvery = 10;
+// A call, which is not tried again, waits a moment for control: often it is our own last call that
+// is just being closed.
+constexpr milliseconds kControlPatience{2000};
+constexpr milliseconds kControlPoll{50};
 constexpr milliseconds kSearchTime{500};
 constexpr milliseconds kAskTime{150};
 constexpr milliseconds kPopTime{10};
@@ -136,12 +140,7 @@ Result<FoundCamera> GevDevice::Locate() {
 
 Status GevDevice::Open() {
   VS_ASSIGN_OR_RETURN(camera_, Locate());
-  VS_ASSIGN_OR_RETURN(const uint32_t privilege,
-                      ReadGevRegister(camera_.address, kGevControlPrivilege, kSearchTime));
-  if (privilege != 0) {
-    return FailedPrecondition(Str("another program controls the camera at ", camera_.address,
-                                  "; waiting until it lets go or its heartbeat stops"));
-  }
+  VS_RETURN_IF_ERROR(AwaitControl());
   VS_ASSIGN_OR_RETURN(session_, GevSession::Open(camera_.address));
   VS_RETURN_IF_ERROR(session_->Configure(options_.features, memory_));
   NoteSettings();
@@ -158,6 +157,19 @@ Status GevDevice::Open() {
   LogInfo("camera", Str(options_.uri, again ? " open again: " : " open: ", camera_.model,
                         ", serial ", camera_.serial, ", at ", camera_.address));
   return {};
+}
+
+Status GevDevice::AwaitControl() {
+  const auto deadline = std::chrono::steady_clock::now() + kControlPatience;
+  while (true) {
+    VS_ASSIGN_OR_RETURN(const uint32_t privilege,
+                        ReadGevRegister(camera_.address, kGevControlPrivilege, kSearchTime));
+    if (privilege == 0) return {};
+    if (quit_ || streaming_wanted_ || std::chrono::steady_clock::now() >= deadline) break;
+    std::this_thread::sleep_for(kControlPoll);
+  }
+  return FailedPrecondition(Str("another program controls the camera at ", camera_.address,
+                                "; waiting until it lets go or its heartbeat stops"));
 }
 
 Status GevDevice::Serve() {

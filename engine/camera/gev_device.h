@@ -60,6 +60,7 @@ class GevDevice {
 
   Status Open();
   Result<FoundCamera> Locate();
+  Status AwaitControl();
   // Until the camera is lost (then: why), or this object goes: a camera that was opened, if only
   // for one call, stays ours as long as somebody holds it.
   Status Serve();
