@@ -54,6 +54,12 @@ int CensusShift(CensusPattern pattern) {
   return pattern == CensusPattern::k7x7 || pattern == CensusPattern::k9x7 ? 1 : 0;
 }
 
+int CensusSteps(CensusPattern pattern, ptrdiff_t stride, ptrdiff_t* steps) {
+  int count = 0;
+  ForEachNeighbour(pattern, [&](int dx, int dy) { steps[count++] = dy * stride + dx; });
+  return count;
+}
+
 void CensusRow(const PaddedPicture& picture, CensusPattern pattern, int y, uint8_t* codes) {
   const int width = picture.width();
   std::memset(codes, 0, static_cast<size_t>(width) * CensusBytes(pattern));

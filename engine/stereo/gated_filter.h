@@ -5,6 +5,7 @@
 
 #include "engine/image/disparity_map.h"
 #include "engine/image/image.h"
+#include "engine/stereo/filter_kernels.h"
 
 namespace vs {
 
@@ -12,6 +13,14 @@ struct GatedFilterOptions {
   int gate = 20;  // grey levels, 0..255
   bool median = true;
   bool fill = true;
+  int greatest = 0xfffe;  // no stored disparity is greater; the less, the quicker
+};
+
+// Keeps its room between calls; one per thread.
+struct GatedFilterScratch {
+  std::vector<uint16_t> rows;
+  std::vector<uint16_t> disparities;
+  std::vector<uint16_t> greys;
 };
 
 // Filters that look only at pixels of the same surface: members of a window are its valid pixels,
@@ -23,10 +32,10 @@ struct GatedFilterOptions {
 //           lie within 16 (1 px) of their median, takes that median with kFilledConfidence.
 //
 // Both look at `in` only, so the order does not matter. Writes rows [begin, end) of `out`, which
-// has the size of `in` and shares no memory with it. `scratch` keeps memory between calls; one per
-// thread.
+// has the size of `in` and shares no memory with it.
 void GatedFilterRows(const DisparityMap& in, const GreyImage& left,
                      const GatedFilterOptions& options, int begin, int end,
-                     std::vector<uint16_t>* scratch, DisparityMap* out);
+                     GatedFilterScratch* memory, DisparityMap* out,
+                     const FilterKernels& kernels = PlainFilterKernels());
 
 }  // namespace vs

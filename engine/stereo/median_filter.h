@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/image/disparity_map.h"
+#include "engine/stereo/filter_kernels.h"
 
 namespace vs {
 
@@ -15,6 +16,7 @@ namespace vs {
 // Writes rows [begin, end) of `out`, which has the size of `in` and shares no memory with it.
 // `scratch` keeps memory between calls; one per thread.
 void MedianFilterRows(const DisparityMap& in, int size, int begin, int end,
-                      std::vector<uint16_t>* scratch, DisparityMap* out);
+                      std::vector<uint16_t>* scratch, DisparityMap* out,
+                      const FilterKernels& kernels = PlainFilterKernels());
 
 }  // namespace vs

@@ -96,6 +96,46 @@ int OutsideCost(const SgmSettings& settings) {
   }
 }
 
+int FeaturePlanes(const SgmSettings& settings) {
+  switch (settings.cost) {
+    case MatchCost::kSad:
+      return 1;
+    case MatchCost::kBirchfieldTomasi:
+      return 3;
+    case MatchCost::kCensus:
+      return CensusBytes(settings.census);
+    case MatchCost::kAdCensus:
+      break;
+  }
+  return CensusBytes(settings.census) + 1;
+}
+
+void CoarseGreyRow(const PaddedPicture& picture, int y, uint8_t* out) {
+  const uint8_t* row = picture.Row(y);
+  for (int x = 0; x < picture.width(); ++x) out[x] = static_cast<uint8_t>((row[x] + 2) >> 2);
+}
+
+void FeatureRow(const PaddedPicture& picture, const SgmSettings& settings, int y, uint8_t* planes) {
+  const uint8_t* row = picture.Row(y);
+  const int width = picture.width();
+  if (UsesCensus(settings.cost)) {
+    CensusRow(picture, settings.census, y, planes);
+    if (settings.cost == MatchCost::kCensus) return;
+    CoarseGreyRow(picture, y, planes + static_cast<size_t>(CensusBytes(settings.census)) * width);
+    return;
+  }
+  std::memcpy(planes, row, static_cast<size_t>(width));
+  if (settings.cost == MatchCost::kSad) return;
+  uint8_t* low = planes + width;
+  uint8_t* high = low + width;
+  for (int x = 0; x < width; ++x) {
+    const uint8_t before = Average(row[x], row[x - 1]);
+    const uint8_t after = Average(row[x], row[x + 1]);
+    low[x] = std::min(row[x], std::min(before, after));
+    high[x] = std::max(row[x], std::max(before, after));
+  }
+}
+
 InsideRange InsideOf(int x, int width, const SgmSettings& settings) {
   // 0 <= x - min_disparity - i < width
   const int begin = std::clamp(x - settings.min_disparity - width + 1, 0, settings.num_disparities);
@@ -109,38 +149,15 @@ void PixelCost::Prepare(const PaddedPicture* left, const PaddedPicture* right,
   right_picture_ = right;
   settings_ = settings;
   width_ = left->width();
-  const auto width = static_cast<size_t>(width_);
-  for (View* view : {&left_, &right_}) {
-    view->grey.resize(width);
-    view->low.resize(settings.cost == MatchCost::kBirchfieldTomasi ? width : 0);
-    view->high.resize(view->low.size());
-    view->codes.resize(UsesCensus(settings.cost) ? width * CensusBytes(settings.census) : 0);
-  }
-}
-
-void PixelCost::PrepareRow(const PaddedPicture& picture, int y, View* view) const {
-  const uint8_t* row = picture.Row(y);
-  for (int x = 0; x < width_; ++x) {
-    view->grey[x] =
-        settings_.cost == MatchCost::kAdCensus ? static_cast<uint8_t>((row[x] + 2) >> 2) : row[x];
-  }
-  if (settings_.cost == MatchCost::kBirchfieldTomasi) {
-    for (int x = 0; x < width_; ++x) {
-      const uint8_t before = Average(row[x], row[x - 1]);
-      const uint8_t after = Average(row[x], row[x + 1]);
-      view->low[x] = std::min(row[x], std::min(before, after));
-      view->high[x] = std::max(row[x], std::max(before, after));
-    }
-  }
-  if (UsesCensus(settings_.cost)) CensusRow(picture, settings_.census, y, view->codes.data());
+  planes_ = FeaturePlanes(settings);
+  left_.resize(static_cast<size_t>(width_) * planes_);
+  right_.resize(left_.size());
 }
 
 void PixelCost::Row(int y, uint8_t* cost) {
-  PrepareRow(*left_picture_, y, &left_);
-  PrepareRow(*right_picture_, y, &right_);
-  for (auto* rows : {&right_.grey, &right_.low, &right_.high, &right_.codes}) {
-    MirrorRows(rows->data(), width_, static_cast<int>(rows->size() / static_cast<size_t>(width_)));
-  }
+  FeatureRow(*left_picture_, settings_, y, left_.data());
+  FeatureRow(*right_picture_, settings_, y, right_.data());
+  MirrorRows(right_.data(), width_, planes_);
   const int disparities = settings_.num_disparities;
   const int outside = OutsideCost(settings_);
   for (int x = 0; x < width_; ++x, cost += disparities) {
@@ -155,36 +172,31 @@ void PixelCost::Row(int y, uint8_t* cost) {
 void PixelCost::Compare(int x, int begin, int end, int mirrored, uint8_t* cost) const {
   const int count = end - begin;
   cost += begin;
-  const uint8_t* right = right_.grey.data() + mirrored;
-  const auto grey_limit = static_cast<uint8_t>(settings_.grey_limit);
-  switch (settings_.cost) {
-    case MatchCost::kSad:
-      return SadCost(left_.grey[x], right, count, grey_limit, cost);
-    case MatchCost::kBirchfieldTomasi:
-      return BirchfieldTomasiCost({left_.grey[x], left_.low[x], left_.high[x]}, right,
-                                  right_.low.data() + mirrored, right_.high.data() + mirrored,
-                                  count, grey_limit, cost);
-    case MatchCost::kCensus:
-    case MatchCost::kAdCensus:
-      break;
-  }
   const auto stride = static_cast<size_t>(width_);
-  const uint8_t* left_code = left_.codes.data() + x;
-  const uint8_t* right_codes = right_.codes.data() + mirrored;
+  const uint8_t* left = left_.data() + x;
+  const uint8_t* right = right_.data() + mirrored;
+  const auto grey_limit = static_cast<uint8_t>(settings_.grey_limit);
+  if (settings_.cost == MatchCost::kSad) return SadCost(*left, right, count, grey_limit, cost);
+  if (settings_.cost == MatchCost::kBirchfieldTomasi) {
+    return BirchfieldTomasiCost({left[0], left[stride], left[2 * stride]}, right, right + stride,
+                                right + 2 * stride, count, grey_limit, cost);
+  }
+  const int bytes = CensusBytes(settings_.census);
   const int shift = CensusShift(settings_.census);
-  switch (CensusBytes(settings_.census)) {
+  switch (bytes) {
     case 6:
-      CensusCost<6>(left_code, right_codes, stride, count, shift, cost);
+      CensusCost<6>(left, right, stride, count, shift, cost);
       break;
     case 8:
-      CensusCost<8>(left_code, right_codes, stride, count, shift, cost);
+      CensusCost<8>(left, right, stride, count, shift, cost);
       break;
     default:
-      CensusCost<3>(left_code, right_codes, stride, count, shift, cost);
+      CensusCost<3>(left, right, stride, count, shift, cost);
       break;
   }
-  if (settings_.cost == MatchCost::kAdCensus && settings_.ad_limit > 0) {
-    AddDifference(left_.grey[x], right, count, static_cast<uint8_t>(settings_.ad_limit), cost);
+  if (settings_.cost == MatchCost::kAdCensus) {
+    AddDifference(left[bytes * stride], right + bytes * stride, count,
+                  static_cast<uint8_t>(settings_.ad_limit), cost);
   }
 }
 

@@ -24,6 +24,15 @@ namespace vs {
 // picture, a high one bends depth edges; about 0.3 of the largest cost suits the census costs.
 int OutsideCost(const SgmSettings& settings);
 
+// What a row of pixels is compared by, in planes of one byte a pixel: the census code (its bytes),
+// then J for kAdCensus; I for kSad; I, lo and hi for kBirchfieldTomasi.
+int FeaturePlanes(const SgmSettings& settings);
+// Plane p of pixel x of row `y` goes to planes[p * width + x].
+void FeatureRow(const PaddedPicture& picture, const SgmSettings& settings, int y, uint8_t* planes);
+
+// J of a row.
+void CoarseGreyRow(const PaddedPicture& picture, int y, uint8_t* out);
+
 // The indices i whose counterpart of left pixel x lies inside the right picture: [begin, end).
 struct InsideRange {
   int begin;
@@ -40,24 +49,16 @@ class PixelCost {
   void Row(int y, uint8_t* cost);
 
  private:
-  // One row of one view; the right one mirrored (pixel x at width - 1 - x), so that both the index
-  // i and the address grow together.
-  struct View {
-    std::vector<uint8_t> grey;   // I, or J for kAdCensus
-    std::vector<uint8_t> low;    // kBirchfieldTomasi: lo
-    std::vector<uint8_t> high;   // kBirchfieldTomasi: hi
-    std::vector<uint8_t> codes;  // census
-  };
-
-  void PrepareRow(const PaddedPicture& picture, int y, View* view) const;
   void Compare(int x, int begin, int end, int mirrored, uint8_t* cost) const;
 
   const PaddedPicture* left_picture_ = nullptr;
   const PaddedPicture* right_picture_ = nullptr;
   SgmSettings settings_;
   int width_ = 0;
-  View left_;
-  View right_;
+  int planes_ = 0;
+  std::vector<uint8_t> left_;
+  // Mirrored (pixel x at width - 1 - x), so that both the index i and the address grow together.
+  std::vector<uint8_t> right_;
 };
 
 }  // namespace vs

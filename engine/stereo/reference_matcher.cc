@@ -4,51 +4,19 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
-#include <new>
-#include <utility>
 #include <vector>
 
 #include "engine/base/str.h"
-#include "engine/stereo/background_fill.h"
+#include "engine/stereo/cell_memory.h"
 #include "engine/stereo/cost_window.h"
-#include "engine/stereo/gated_filter.h"
-#include "engine/stereo/median_filter.h"
 #include "engine/stereo/path_cost.h"
+#include "engine/stereo/refine.h"
 #include "engine/stereo/selection.h"
-#include "engine/stereo/speckle_filter.h"
 #include "engine/stereo/stereo_matcher.h"
 #include "engine/stereo/thread_team.h"
 
 namespace vs {
 namespace {
-
-// Memory that only grows, so that a warm matcher asks for none.
-class Cells {
- public:
-  // Null when there is not enough.
-  uint8_t* Reserve(size_t bytes) {
-    if (bytes > capacity_) {
-      memory_.reset();
-      memory_.reset(new (std::nothrow) uint8_t[bytes]);
-      capacity_ = memory_ ? bytes : 0;
-    }
-    return memory_.get();
-  }
-
- private:
-  std::unique_ptr<uint8_t[]> memory_;
-  size_t capacity_ = 0;
-};
-
-DisparityMap MakeMap(int width, int height, int offset_px, BufferPool& pool) {
-  DisparityMap map{.disparity = Image<uint16_t>(pool, width, height),
-                   .confidence = GreyImage(pool, width, height),
-                   .reason = GreyImage(pool, width, height),
-                   .offset_px = offset_px};
-  map.geometry.width = width;
-  map.geometry.height = height;
-  return map;
-}
 
 class ReferenceMatcher final : public StereoMatcher {
  public:
@@ -71,12 +39,12 @@ class ReferenceMatcher final : public StereoMatcher {
     }
     ComputeCosts(left, right, settings, costs);
     SumPaths(left, settings, costs, sums);
-    DisparityMap map = MakeMap(width, height, DisparityOffset(settings), pool);
+    DisparityMap map = MakeDisparityMap(width, height, DisparityOffset(settings), pool);
     ForRows(height, [&](Worker& worker, int begin, int end) {
       worker.selection.Prepare(settings, width);
       for (int y = begin; y < end; ++y) worker.selection.Row(sums, left, y, &map);
     });
-    Filter(left, settings, pool, &map);
+    refiner_.Refine(left, settings, parts_, &team_, pool, &map);
     return map;
   }
 
@@ -85,15 +53,14 @@ class ReferenceMatcher final : public StereoMatcher {
     CostRows cost_rows;
     Selection selection;
     std::vector<uint8_t> paths;
-    std::vector<uint16_t> filter;
   };
 
   // Calls work(worker, begin, end) for each part's share of `count` rows or lines.
   template <class Work>
   void ForRows(int count, Work work) {
     team_.Run(parts_, [&](int part) {
-      work(workers_[part], static_cast<int>(static_cast<int64_t>(count) * part / parts_),
-           static_cast<int>(static_cast<int64_t>(count) * (part + 1) / parts_));
+      const RowRange rows = ShareOf(count, part, parts_);
+      work(workers_[part], rows.begin, rows.end);
     });
   }
 
@@ -122,40 +89,14 @@ class ReferenceMatcher final : public StereoMatcher {
     }
   }
 
-  void Filter(const GreyImage& left, const SgmSettings& settings, BufferPool& pool,
-              DisparityMap* map) {
-    const int width = left.width();
-    const int height = left.height();
-    DisparityMap other = MakeMap(width, height, map->offset_px, pool);
-    if (settings.median > 0) {
-      ForRows(height, [&](Worker& worker, int begin, int end) {
-        MedianFilterRows(*map, settings.median, begin, end, &worker.filter, &other);
-      });
-      std::swap(*map, other);
-    }
-    if (settings.speckle_size > 0) {
-      RemoveSpeckles(settings.speckle_size, kDisparityScale * settings.speckle_step, pool, map);
-    }
-    if (settings.gated_median || settings.fill_holes) {
-      const GatedFilterOptions options{
-          .gate = settings.gate, .median = settings.gated_median, .fill = settings.fill_holes};
-      ForRows(height, [&](Worker& worker, int begin, int end) {
-        GatedFilterRows(*map, left, options, begin, end, &worker.filter, &other);
-      });
-      std::swap(*map, other);
-    }
-    if (settings.fill_background) {
-      ForRows(height, [&](Worker&, int begin, int end) { FillBackgroundRows(begin, end, map); });
-    }
-  }
-
   ThreadTeam team_;
   int parts_ = 1;
   std::vector<Worker> workers_;
   PaddedPicture left_;
   PaddedPicture right_;
-  Cells costs_;
-  Cells sums_;
+  Refiner refiner_;
+  CellMemory costs_;
+  CellMemory sums_;
 };
 
 VS_REGISTER_MATCHER("reference", 0, [] {

@@ -56,10 +56,71 @@ void OfferToRight(const uint8_t* __restrict sums, const uint8_t* __restrict indi
   }
 }
 
+// V for the left pixel with winner `index`; its counterpart is inside.
+int ViewDifference(const SgmSettings& settings, const uint8_t* right_index, int index,
+                   int counterpart) {
+  int difference = std::abs(right_index[counterpart] - index);
+  if (settings.left_right_lenient && counterpart > 0) {
+    difference = std::min(difference, std::abs(right_index[counterpart - 1] - index));
+  }
+  return difference;
+}
+
+// Rules 3 to 5.
+InvalidReason Judge(const SgmSettings& settings, const GreyImage& left, int x, int y, int index,
+                    int best, int second, int difference, int confidence) {
+  if (difference > settings.left_right_tolerance) {
+    if (index == 0) return InvalidReason::kOutOfRangeFar;
+    if (index == settings.num_disparities - 1) return InvalidReason::kOutOfRangeNear;
+    return Explain(InvalidReason::kOccluded, left, x, y);
+  }
+  if (second * (100 - settings.uniqueness_percent) < best * 100) {
+    return Explain(InvalidReason::kAmbiguous, left, x, y);
+  }
+  return confidence < settings.min_confidence ? InvalidReason::kFiltered : InvalidReason::kNone;
+}
+
 }  // namespace
 
 int DisparityOffset(const SgmSettings& settings) {
   return settings.min_disparity < 0 ? settings.min_disparity - 1 : 0;
+}
+
+void JudgeRow(const SgmSettings& settings, const GreyImage& left, int y, const WinnerRow& winners,
+              const uint8_t* right_index, DisparityMap* map) {
+  const int width = left.width();
+  const int last = settings.num_disparities - 1;
+  const int first_stored = kDisparityScale * (settings.min_disparity - DisparityOffset(settings));
+  uint16_t* disparity_row = map->disparity.Row(y);
+  uint8_t* confidence_row = map->confidence.Row(y);
+  uint8_t* reason_row = map->reason.Row(y);
+  for (int x = 0; x < width; ++x) {
+    const int i = winners.index[x];
+    const int best = winners.best[x];
+    const int second = winners.second[x];
+    int stored = first_stored + kDisparityScale * i;
+    if (i > 0 && i < last) {
+      stored += SubPixelSixteenths(settings.sub_pixel, winners.before[x], best, winners.after[x]);
+    }
+    const int counterpart = x - settings.min_disparity - i;
+    InvalidReason reason = InvalidReason::kNone;
+    int confidence = 0;
+    if (counterpart < 0 || counterpart >= width) {
+      reason = InvalidReason::kBorder;
+    } else if (stored <= 0) {
+      reason = InvalidReason::kOutOfRangeFar;
+    } else {
+      const int difference =
+          settings.left_right_check ? ViewDifference(settings, right_index, i, counterpart) : 0;
+      const int margin = second == 0 ? 0 : 255 * (second - best) / second;
+      confidence = std::max<int>(margin >> std::min(difference, 8), kLeastConfidence);
+      reason = Judge(settings, left, x, y, i, best, second, difference, confidence);
+    }
+    const bool valid = reason == InvalidReason::kNone;
+    disparity_row[x] = valid ? static_cast<uint16_t>(stored) : kInvalidDisparity;
+    confidence_row[x] = valid ? static_cast<uint8_t>(confidence) : 0;
+    reason_row[x] = static_cast<uint8_t>(reason);
+  }
 }
 
 void Selection::Prepare(const SgmSettings& settings, int width) {
@@ -69,6 +130,8 @@ void Selection::Prepare(const SgmSettings& settings, int width) {
   std::iota(indices_.begin(), indices_.end(), uint8_t{0});
   right_least_.resize(static_cast<size_t>(width));
   right_index_.resize(static_cast<size_t>(width));
+  winner_memory_.resize(static_cast<size_t>(width) * WinnerRow::kPlanes);
+  winners_ = WinnerRow::In(winner_memory_.data(), width);
 }
 
 void Selection::SelectRight(const CellVolume& sums, int y) {
@@ -84,66 +147,26 @@ void Selection::SelectRight(const CellVolume& sums, int y) {
   std::reverse(right_index_.begin(), right_index_.end());
 }
 
-Selection::Winner Selection::SelectLeft(const uint8_t* sums) const {
+void Selection::SelectLeft(const CellVolume& sums, int y) {
   const int disparities = settings_.num_disparities;
-  Winner winner{};
-  winner.best = LeastOf(sums, 0, disparities);
-  const void* first = std::memchr(sums, winner.best, static_cast<size_t>(disparities));
-  winner.index = static_cast<uint8_t>(static_cast<const uint8_t*>(first) - sums);
-  winner.second =
-      std::min(LeastOf(sums, 0, winner.index - 1), LeastOf(sums, winner.index + 2, disparities));
-  return winner;
-}
-
-int Selection::Difference(int index, int counterpart) const {
-  int difference = std::abs(right_index_[counterpart] - index);
-  if (settings_.left_right_lenient && counterpart > 0) {
-    difference = std::min(difference, std::abs(right_index_[counterpart - 1] - index));
+  for (int x = 0; x < width_; ++x) {
+    const uint8_t* cell = sums.At(x, y);
+    const uint8_t best = LeastOf(cell, 0, disparities);
+    const void* first = std::memchr(cell, best, static_cast<size_t>(disparities));
+    const int index = static_cast<int>(static_cast<const uint8_t*>(first) - cell);
+    winners_.index[x] = static_cast<uint8_t>(index);
+    winners_.best[x] = best;
+    winners_.second[x] =
+        std::min(LeastOf(cell, 0, index - 1), LeastOf(cell, index + 2, disparities));
+    winners_.before[x] = cell[std::max(index - 1, 0)];
+    winners_.after[x] = cell[std::min(index + 1, disparities - 1)];
   }
-  return difference;
-}
-
-InvalidReason Selection::Judge(const Winner& winner, const GreyImage& left, int x, int y,
-                               bool inside, int stored, int difference, int confidence) const {
-  if (!inside) return InvalidReason::kBorder;
-  if (stored <= 0) return InvalidReason::kOutOfRangeFar;
-  if (difference > settings_.left_right_tolerance) {
-    if (winner.index == 0) return InvalidReason::kOutOfRangeFar;
-    if (winner.index == settings_.num_disparities - 1) return InvalidReason::kOutOfRangeNear;
-    return Explain(InvalidReason::kOccluded, left, x, y);
-  }
-  if (winner.second * (100 - settings_.uniqueness_percent) < winner.best * 100) {
-    return Explain(InvalidReason::kAmbiguous, left, x, y);
-  }
-  return confidence < settings_.min_confidence ? InvalidReason::kFiltered : InvalidReason::kNone;
 }
 
 void Selection::Row(const CellVolume& sums, const GreyImage& left, int y, DisparityMap* map) {
-  const int last = settings_.num_disparities - 1;
-  const int first_stored = kDisparityScale * (settings_.min_disparity - DisparityOffset(settings_));
   if (settings_.left_right_check) SelectRight(sums, y);
-  uint16_t* disparity_row = map->disparity.Row(y);
-  uint8_t* confidence_row = map->confidence.Row(y);
-  uint8_t* reason_row = map->reason.Row(y);
-  for (int x = 0; x < width_; ++x) {
-    const uint8_t* cell = sums.At(x, y);
-    const Winner winner = SelectLeft(cell);
-    const int i = winner.index;
-    int stored = first_stored + kDisparityScale * i;
-    if (i > 0 && i < last) {
-      stored += SubPixelSixteenths(settings_.sub_pixel, cell[i - 1], winner.best, cell[i + 1]);
-    }
-    const int counterpart = x - settings_.min_disparity - i;
-    const bool inside = counterpart >= 0 && counterpart < width_;
-    const int difference = settings_.left_right_check && inside ? Difference(i, counterpart) : 0;
-    const int margin = winner.second == 0 ? 0 : 255 * (winner.second - winner.best) / winner.second;
-    const int confidence = std::max<int>(margin >> std::min(difference, 8), kLeastConfidence);
-    const InvalidReason reason = Judge(winner, left, x, y, inside, stored, difference, confidence);
-    const bool valid = reason == InvalidReason::kNone;
-    disparity_row[x] = valid ? static_cast<uint16_t>(stored) : kInvalidDisparity;
-    confidence_row[x] = valid ? static_cast<uint8_t>(confidence) : 0;
-    reason_row[x] = static_cast<uint8_t>(reason);
-  }
+  SelectLeft(sums, y);
+  JudgeRow(settings_, left, y, winners_, right_index_.data(), map);
 }
 
 }  // namespace vs

@@ -7,6 +7,7 @@
 #include "engine/image/image.h"
 #include "engine/stereo/path_cost.h"
 #include "engine/stereo/sgm_settings.h"
+#include "engine/stereo/winner_row.h"
 
 namespace vs {
 
@@ -44,6 +45,11 @@ int DisparityOffset(const SgmSettings& settings);
 inline constexpr uint8_t kFilledConfidence = 1;
 inline constexpr uint8_t kLeastConfidence = 2;
 
+// From winners to disparities: writes row `y` of the three images of `map`. `right_index` is the
+// right view's row of winners; not looked at without left_right_check.
+void JudgeRow(const SgmSettings& settings, const GreyImage& left, int y, const WinnerRow& winners,
+              const uint8_t* right_index, DisparityMap* map);
+
 // Selects the disparities of single rows. Keeps scratch memory; one per thread.
 class Selection {
  public:
@@ -52,25 +58,16 @@ class Selection {
   void Row(const CellVolume& sums, const GreyImage& left, int y, DisparityMap* map);
 
  private:
-  struct Winner {
-    uint8_t index;
-    uint8_t best;    // Z
-    uint8_t second;  // N
-  };
-
   void SelectRight(const CellVolume& sums, int y);
-  Winner SelectLeft(const uint8_t* sums) const;
-  // V for the left pixel with winner `index`; its counterpart is inside.
-  int Difference(int index, int counterpart) const;
-  // Rules 1 to 5; kNone if the pixel is valid.
-  InvalidReason Judge(const Winner& winner, const GreyImage& left, int x, int y, bool inside,
-                      int stored, int difference, int confidence) const;
+  void SelectLeft(const CellVolume& sums, int y);
 
   SgmSettings settings_;
   int width_ = 0;
   std::vector<uint8_t> indices_;      // 0, 1, 2 ... 255
   std::vector<uint8_t> right_least_;  // mirrored: right pixel x at width - 1 - x
   std::vector<uint8_t> right_index_;  // by right pixel
+  std::vector<uint8_t> winner_memory_;
+  WinnerRow winners_;
 };
 
 }  // namespace vs

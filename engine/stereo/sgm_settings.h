@@ -69,9 +69,9 @@ struct SgmSettings {
   // Paths (path_cost.h).
   int directions = 4;  // 1..8; 1: from the left, 2: + right, 4: + top, bottom, then diagonals
   int p1 = 7;          // cost units, 0..p2: penalty of a step by one disparity
-  int p2 = 34;         // cost units, p1..64: penalty of any larger step
+  int p2 = 35;         // cost units, p1..64: penalty of any larger step
   int p2_min = 14;     // cost units, 0..64: p2 falls no lower at an edge
-  int p2_slope_permille = 30;  // 0..1000: p2 / (1 + slope * grey step along the path); 0: constant
+  int p2_slope_permille = 40;  // 0..1000: p2 / (1 + slope * grey step along the path); 0: constant
 
   // Selection (selection.h).
   SubPixel sub_pixel = SubPixel::kEquiangular;
@@ -84,7 +84,7 @@ struct SgmSettings {
   bool left_right_lenient = true;  // the neighbour left of the counterpart may agree instead
 
   // Filters, in this order (median_filter.h, speckle_filter.h, gated_filter.h, background_fill.h).
-  int median = 3;                // px, 0 (off), 3 or 5; closes 1-px holes
+  int median = 5;                // px, 0 (off), 3 or 5; closes 1-px holes
   int speckle_size = 60;         // px, 0 (off)..65535: regions up to this size are removed
   int speckle_step = 2;          // px, 1..16: neighbours that differ more belong to two regions
   bool gated_median = true;      // 5 x 5 median over the pixels of similar grey

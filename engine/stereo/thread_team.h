@@ -9,6 +9,17 @@
 
 namespace vs {
 
+// Rows [begin, end).
+struct RowRange {
+  int begin;
+  int end;
+};
+// The share of `part` of `parts`: as equal as can be.
+inline RowRange ShareOf(int count, int part, int parts) {
+  return {static_cast<int>(int64_t{count} * part / parts),
+          static_cast<int>(int64_t{count} * (part + 1) / parts)};
+}
+
 // Runs the parts of one picture's work side by side: the caller and up to size - 1 helpers, which
 // wait between calls. Starting and joining costs microseconds and no heap memory. Used by one
 // caller at a time.

@@ -75,17 +75,37 @@ Result<StereoScene> LoadStereoScene(const std::filesystem::path& folder, BufferP
   return scene;
 }
 
-std::vector<std::filesystem::path> StereoSceneFolders() {
+std::vector<std::filesystem::path> StereoSceneFoldersIn(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> folders;
-  const char* root = std::getenv("VS_TEST_DATA");
-  if (root == nullptr) return folders;
   std::error_code error;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(std::filesystem::path(root) / "stereo", error)) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
     if (std::filesystem::exists(entry.path() / "meta.json")) folders.push_back(entry.path());
   }
   std::sort(folders.begin(), folders.end());
   return folders;
+}
+
+std::vector<std::filesystem::path> StereoSceneFolders() {
+  const char* root = std::getenv("VS_TEST_DATA");
+  if (root == nullptr) return {};
+  return StereoSceneFoldersIn(std::filesystem::path(root) / "stereo");
+}
+
+Status WriteStereoScene(const StereoScene& scene, const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  cv::Mat disparity;
+  cv::Mat truth = CvView(scene.truth.disparity_px).clone();
+  truth.setTo(0, truth != truth);  // unknown is not a number
+  truth.convertTo(disparity, CV_16U, 256);
+  const bool written = cv::imwrite((folder / "left.png").string(), CvView(scene.left)) &&
+                       cv::imwrite((folder / "right.png").string(), CvView(scene.right)) &&
+                       cv::imwrite((folder / "disp.png").string(), disparity) &&
+                       cv::imwrite((folder / "nonocc.png").string(), CvView(scene.truth.visible));
+  std::ofstream meta(folder / "meta.json");
+  meta << nlohmann::json{{"name", scene.name}, {"num_disparities", scene.num_disparities}};
+  if (!written || !meta.good()) return Unavailable(Str("cannot write to ", folder.string()));
+  return Status();
 }
 
 Result<StereoScene> LoadAloe(BufferPool& pool) {

@@ -24,11 +24,17 @@ struct StereoScene {
 // unknown), nonocc.png (255 = visible in both) and meta.json (name, num_disparities).
 Result<StereoScene> LoadStereoScene(const std::filesystem::path& folder, BufferPool& pool);
 
+// The folders in `folder` that hold a scene, by name.
+std::vector<std::filesystem::path> StereoSceneFoldersIn(const std::filesystem::path& folder);
+
 // The scene folders below $VS_TEST_DATA/stereo, by name; empty when the variable is not set.
 std::vector<std::filesystem::path> StereoSceneFolders();
 
 // Debian's opencv-doc aloe pair at half size (its truth in whole pixels of the full size).
 // NOT_FOUND when the package is not installed.
 Result<StereoScene> LoadAloe(BufferPool& pool);
+
+// Writes it as a scene that LoadStereoScene reads.
+Status WriteStereoScene(const StereoScene& scene, const std::filesystem::path& folder);
 
 }  // namespace vs

@@ -27,7 +27,7 @@ class Filters : public testing::Test {
   DisparityMap Gated(const DisparityMap& map, const GreyImage& grey,
                      const GatedFilterOptions& options) {
     DisparityMap out = EmptyLike(pool_, map);
-    GatedFilterRows(map, grey, options, 0, map.disparity.height(), &scratch_, &out);
+    GatedFilterRows(map, grey, options, 0, map.disparity.height(), &gated_, &out);
     return out;
   }
   GreyImage Grey(int width, int height, uint8_t value) {
@@ -43,6 +43,7 @@ class Filters : public testing::Test {
 
   BufferPool pool_;
   std::vector<uint16_t> scratch_;
+  GatedFilterScratch gated_;
 };
 
 TEST_F(Filters, MedianRemovesALoneValueAndClosesALoneHole) {

@@ -9,6 +9,7 @@
 #include "engine/base/str.h"
 #include "engine/stereo/match_right_view.h"
 #include "engine/stereo/stereo_matcher.h"
+#include "tests/engine/stereo/map_difference.h"
 #include "tests/engine/stereo/naive_sgm.h"
 #include "tests/engine/stereo/pictures.h"
 #include "tests/engine/stereo/random_settings.h"
@@ -32,31 +33,14 @@ class ReferenceMatcher : public testing::Test {
   std::mt19937 random_{20240611};
 };
 
-// The first pixel in which two maps differ, in words; empty if they are equal.
-std::string Difference(const DisparityMap& a, const DisparityMap& b) {
-  if (!a.disparity.SameSizeAs(b.disparity) || a.offset_px != b.offset_px) return "size or offset";
-  for (int y = 0; y < a.disparity.height(); ++y) {
-    for (int x = 0; x < a.disparity.width(); ++x) {
-      const std::array<int, 3> left = {a.disparity.Row(y)[x], a.confidence.Row(y)[x],
-                                       a.reason.Row(y)[x]};
-      const std::array<int, 3> right = {b.disparity.Row(y)[x], b.confidence.Row(y)[x],
-                                        b.reason.Row(y)[x]};
-      if (left == right) continue;
-      return Str("(", x, ", ", y, "): disparity, confidence, reason ", left[0], " ", left[1], " ",
-                 left[2], " against ", right[0], " ", right[1], " ", right[2]);
-    }
-  }
-  return "";
-}
-
 TEST_F(ReferenceMatcher, EqualsTheDefinitionOnRandomPicturesAndSettings) {
   for (int round = 0; round < 100; ++round) {
     const int width = 16 + Below(random_, 40);
     const int height = 16 + Below(random_, 14);
     const RandomPair pair = MakeRandomPair(pool_, width, height, random_);
     const SgmSettings settings = MakeRandomSettings(random_, 40);
-    ASSERT_EQ(Difference(Match(pair, settings), NaiveSgm(pair.left, pair.right, settings, pool_)),
-              "")
+    ASSERT_EQ(
+        MapDifference(Match(pair, settings), NaiveSgm(pair.left, pair.right, settings, pool_)), "")
         << "round " << round << ", " << width << " x " << height << " px, " << Describe(settings);
   }
 }
@@ -65,15 +49,15 @@ TEST_F(ReferenceMatcher, EqualsTheDefinitionWithTheRecommendedSettings) {
   const RandomPair pair = MakeRandomPair(pool_, 70, 33, random_);
   for (const int directions : {1, 4, 7, 8}) {
     const SgmSettings settings{.num_disparities = 24, .directions = directions};
-    EXPECT_EQ(Difference(Match(pair, settings), NaiveSgm(pair.left, pair.right, settings, pool_)),
-              "");
+    EXPECT_EQ(
+        MapDifference(Match(pair, settings), NaiveSgm(pair.left, pair.right, settings, pool_)), "");
   }
 }
 
 TEST_F(ReferenceMatcher, EqualsTheDefinitionOverTheWholeRange) {
   const RandomPair pair = MakeRandomPair(pool_, 300, 16, random_);
   const SgmSettings settings{.num_disparities = 256, .smooth_cost = false, .directions = 8};
-  EXPECT_EQ(Difference(Match(pair, settings), NaiveSgm(pair.left, pair.right, settings, pool_)),
+  EXPECT_EQ(MapDifference(Match(pair, settings), NaiveSgm(pair.left, pair.right, settings, pool_)),
             "");
 }
 
@@ -84,7 +68,7 @@ TEST_F(ReferenceMatcher, TheNumberOfThreadsDoesNotChangeTheResult) {
     const SgmSettings settings = MakeRandomSettings(random_, 48);
     const DisparityMap one = Match(pair, settings, 1);
     for (const int threads : {2, 3, 16, 1000}) {
-      ASSERT_EQ(Difference(Match(pair, settings, threads), one), "")
+      ASSERT_EQ(MapDifference(Match(pair, settings, threads), one), "")
           << threads << " threads, " << Describe(settings);
     }
   }

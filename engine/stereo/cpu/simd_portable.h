@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+namespace {
+
+// Some bytes side by side, and what the kernels do with them. This one is 16 bytes by the
+// compiler's own vectors, for any processor (SSE2, NEON ... or none); the others have the same
+// members.
+struct Simd {
+  static constexpr int kLanes = 16;
+  using V = uint8_t __attribute__((vector_size(16)));
+  using Pairs = uint16_t __attribute__((vector_size(16)));
+
+  // From and to addresses that are multiples of kLanes, or any.
+  static V Load(const uint8_t* p) { return *reinterpret_cast<const V*>(p); }
+  static V LoadAnywhere(const uint8_t* p) {
+    V a;
+    std::memcpy(&a, p, sizeof a);
+    return a;
+  }
+  static void Store(uint8_t* p, V a) { *reinterpret_cast<V*>(p) = a; }
+  static void StoreAnywhere(uint8_t* p, V a) { std::memcpy(p, &a, sizeof a); }
+  // Store past the caches, where the processor can; EndStream before others may read it.
+  static void Stream(uint8_t* p, V a) { Store(p, a); }
+  static void EndStream() {}
+  static V Set(uint8_t a) { return V{} + a; }
+
+  static V Min(V a, V b) { return a < b ? a : b; }
+  static V Max(V a, V b) { return a > b ? a : b; }
+  static V Add(V a, V b) { return a + b; }
+  static V AddSaturated(V a, V b) {
+    const V sum = a + b;
+    return sum | static_cast<V>(sum < a);
+  }
+  static V Subtract(V a, V b) { return a - b; }
+  static V SubtractSaturated(V a, V b) { return Max(a, b) - b; }
+  static V Average(V a, V b) { return (a | b) - (((a ^ b) >> 1) & Set(0x7f)); }
+  static V Xor(V a, V b) { return a ^ b; }
+  static V Or(V a, V b) { return a | b; }
+  static V BitCount(V a) {
+    a = a - ((a >> 1) & Set(0x55));
+    a = (a & Set(0x33)) + ((a >> 2) & Set(0x33));
+    return (a + (a >> 4)) & Set(0x0f);
+  }
+
+  // Lane by lane `yes` or `no`.
+  static V IfEqual(V a, V b, V yes, V no) { return a == b ? yes : no; }
+  static V IfLess(V a, V b, V yes, V no) { return a < b ? yes : no; }
+
+  // Each lane from the lane below (above) it; `guard` in the lane that has none.
+  static V FromBelow(V a, uint8_t guard) {
+    const V places = {16, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14};
+    return __builtin_shuffle(a, Set(guard), places);
+  }
+  static V FromAbove(V a, uint8_t guard) {
+    const V places = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
+    return __builtin_shuffle(a, Set(guard), places);
+  }
+
+  // The least lane, in all lanes.
+  static V LeastOfAll(V a) {
+    a = Min(a, __builtin_shuffle(a, V{8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7}));
+    a = Min(a, __builtin_shuffle(a, V{4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11}));
+    a = Min(a, __builtin_shuffle(a, V{2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13}));
+    return Min(a, __builtin_shuffle(a, V{1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14}));
+  }
+  // Half of the lanes of two vectors as pairs of bytes, each a number of sixteen bits with the
+  // first argument above the second (on a little-endian machine).
+  static V PairLow(V high, V low) {
+    return __builtin_shuffle(low, high, V{0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23});
+  }
+  static V PairHigh(V high, V low) {
+    return __builtin_shuffle(low, high,
+                             V{8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31});
+  }
+  static V MinPairs(V a, V b) {
+    const Pairs x = reinterpret_cast<Pairs>(a);
+    const Pairs y = reinterpret_cast<Pairs>(b);
+    return reinterpret_cast<V>(x < y ? x : y);
+  }
+  static int LeastPair(V a) {
+    const Pairs pairs = reinterpret_cast<Pairs>(a);
+    int least = pairs[0];
+    for (int k = 1; k < kLanes / 2; ++k) least = pairs[k] < least ? pairs[k] : least;
+    return least;
+  }
+  // The first and the last lane.
+  static uint8_t First(V a) { return a[0]; }
+  static uint8_t Last(V a) { return a[kLanes - 1]; }
+};
+
+}  // namespace

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+namespace vs {
+
+// The inner loops of the filters, a row at a time. Compiled once for every processor and once for
+// each instruction set that a matcher knows; they all compute the same.
+//
+// The rows that they read hold stored disparities, widened: they may be read kFilterMargin pixels
+// to the left of x = 0 and kFilterMargin + kFilterLanes to the right of the last pixel.
+inline constexpr int kFilterMargin = 2;
+inline constexpr int kFilterLanes = 64;
+
+struct FilterKernels {
+  // The median of 3 x 3 or 5 x 5 pixels: `rows` are the 3 or 5 rows around.
+  void (*median3)(const uint16_t* const* rows, int width, uint16_t* out);
+  void (*median5)(const uint16_t* const* rows, int width, uint16_t* out);
+  // The gated median of 5 x 5 pixels (gated_filter.h); `greys` are as wide as the rows, and no
+  // disparity is greater than `greatest`.
+  void (*gated_median5)(const uint16_t* const* rows, const uint16_t* const* greys, int width,
+                        int gate, int greatest, uint16_t* out);
+};
+
+// For every processor.
+const FilterKernels& PlainFilterKernels();
+
+}  // namespace vs
