@@ -98,7 +98,7 @@ TEST(PathCost, TakesTheGreyStepAlongThePath) {
 }
 
 TEST(Penalties, FallHyperbolicallyToTheirFloor) {
-  const Penalties penalties = MakePenalties({});
+  const Penalties penalties = MakePenalties({.p2 = 34, .p2_slope_permille = 30});
   EXPECT_EQ(penalties.p1, 7);
   EXPECT_EQ(penalties.p2[0], 34);
   EXPECT_EQ(penalties.p2[1], 33);   // 34 / 1.03 = 33.01

@@ -55,7 +55,8 @@ int64_t MapsInMemory() {
 // however busy the machine. The server is told to put up with clients that do not read.
 class StalledClients : public VisionTest {
  protected:
-  StalledClients() : VisionTest({.config = "limits { unread_ms: 600000 }"}) {
+  StalledClients()
+      : VisionTest({.config = "limits { unread_ms: 600000 streams_per_session: 40 }"}) {
     Probe& source = ProbeOf("source");
     source.ready = [this] { return counted_ < wanted_; };
     source.run = [this](const StepRun&) {
