@@ -26,6 +26,16 @@ struct Plane {
   double Distance(const Sample& s) const { return std::abs(Nearness(s) / s.q - 1) / Norm(); }
 };
 
+// A plane is known well enough from so many points; more only take time.
+constexpr int64_t kMostSamples = 40'000;
+
+// Which rows and columns are looked at: all of a small region, every second one of a larger ...
+int StepOf(const PixelRect& region) {
+  int step = 1;
+  while (int64_t{region.width} * region.height > kMostSamples * step * step) ++step;
+  return step;
+}
+
 // The region's samples, and room for one number for each of them.
 class Samples {
  public:
@@ -35,9 +45,10 @@ class Samples {
         samples_(reinterpret_cast<Sample*>(memory_.data)),
         numbers_(reinterpret_cast<double*>(samples_ + Capacity())) {
     const RectifiedGeometry& g = map.geometry;
-    for (int y = region_.y; y < region_.y + region_.height; ++y) {
+    const int step = StepOf(region_);
+    for (int y = region_.y; y < region_.y + region_.height; y += step) {
       const float* depth = map.depth_m.Row(y);
-      for (int x = region_.x; x < region_.x + region_.width; ++x) {
+      for (int x = region_.x; x < region_.x + region_.width; x += step) {
         const double z = depth[x];
         if (!(std::isfinite(z) && z > 0)) continue;
         samples_[count_++] = {(x - g.cx_px) / g.focal_px, (y - g.cy_px) / g.focal_px, 1 / z};
