@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/stereo/match_region.h"
+
 namespace vs {
 namespace {
 
@@ -23,10 +25,13 @@ GreyImage Mirrored(const GreyImage& image, BufferPool& pool) {
 }  // namespace
 
 Result<DisparityMap> MatchRightView(StereoMatcher& matcher, const GreyImage& left,
-                                    const GreyImage& right, const SgmSettings& settings,
-                                    int threads, BufferPool& pool) {
-  VS_ASSIGN_OR_RETURN(DisparityMap map, matcher.Match(Mirrored(right, pool), Mirrored(left, pool),
-                                                      settings, threads, pool));
+                                    const GreyImage& right, const PixelRect& region,
+                                    const SgmSettings& settings, int threads, BufferPool& pool) {
+  PixelRect mirrored = Inside(region, right.width(), right.height());
+  mirrored.x = right.width() - mirrored.x - mirrored.width;
+  VS_ASSIGN_OR_RETURN(DisparityMap map,
+                      MatchRegion(matcher, Mirrored(right, pool), Mirrored(left, pool), mirrored,
+                                  settings, threads, pool));
   MirrorInPlace(&map.disparity);
   MirrorInPlace(&map.confidence);
   MirrorInPlace(&map.reason);

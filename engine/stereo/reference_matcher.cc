@@ -8,6 +8,7 @@
 
 #include "engine/base/str.h"
 #include "engine/stereo/cell_memory.h"
+#include "engine/stereo/condition_pair.h"
 #include "engine/stereo/cost_window.h"
 #include "engine/stereo/path_cost.h"
 #include "engine/stereo/refine.h"
@@ -20,10 +21,13 @@ namespace {
 
 class ReferenceMatcher final : public StereoMatcher {
  public:
-  Result<DisparityMap> Match(const GreyImage& left, const GreyImage& right,
+  Result<DisparityMap> Match(const GreyImage& left_seen, const GreyImage& right_seen,
                              const SgmSettings& settings, int threads, BufferPool& pool) override {
     VS_RETURN_IF_ERROR(ValidateSettings(settings));
-    VS_RETURN_IF_ERROR(ValidatePair(left, right));
+    VS_RETURN_IF_ERROR(ValidatePair(left_seen, right_seen));
+    const PicturePair pair = ConditionPair(left_seen, right_seen, settings, pool);
+    const GreyImage& left = pair.left;
+    const GreyImage& right = pair.right;
     const int width = left.width();
     const int height = left.height();
     parts_ = std::clamp(threads, 1, std::min(width, height));

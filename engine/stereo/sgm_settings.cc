@@ -36,11 +36,29 @@ class Faults {
 
 }  // namespace
 
+const std::vector<std::string>& ChoiceNames(MatchCost) {
+  static const std::vector<std::string> names = {"birchfield_tomasi", "sad", "census", "ad_census"};
+  return names;
+}
+const std::vector<std::string>& ChoiceNames(CensusPattern) {
+  static const std::vector<std::string> names = {"5x5", "7x7", "9x7", "strided_3x3"};
+  return names;
+}
+const std::vector<std::string>& ChoiceNames(SubPixel) {
+  static const std::vector<std::string> names = {"off", "parabola", "equiangular"};
+  return names;
+}
+const std::vector<std::string>& ChoiceNames(PreBlur) {
+  static const std::vector<std::string> names = {"automatic", "off", "light", "strong"};
+  return names;
+}
+
 Status ValidateSettings(const SgmSettings& settings) {
   const SgmSettings& s = settings;
   Faults faults;
   faults.Range("min_disparity", s.min_disparity, -2048, 2048, " px");
   faults.Range("num_disparities", s.num_disparities, 1, 256, " px");
+  faults.Choice("pre_blur", s.pre_blur, PreBlur::kStrong);
   faults.Choice("cost", s.cost, MatchCost::kAdCensus);
   faults.Choice("census", s.census, CensusPattern::kStrided3x3);
   faults.Range("ad_limit", s.ad_limit, 0, 16, "");

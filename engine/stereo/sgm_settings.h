@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "engine/base/status.h"
 #include "engine/image/image.h"
@@ -31,6 +33,20 @@ enum class SubPixel : uint8_t {
   kEquiangular,  // two lines of opposite slope (Shimizu, Okutomi 2001)
 };
 
+// Smoothing of both pictures, against noise; it costs fine structure where there is none.
+enum class PreBlur : uint8_t {
+  kAutomatic,  // strong where the pictures are noisy, else off
+  kOff,
+  kLight,   // Gaussian of sigma 0.5 px
+  kStrong,  // Gaussian of sigma 0.7 px
+};
+
+// The names that users write for the values of these, in the order of the values.
+const std::vector<std::string>& ChoiceNames(MatchCost);
+const std::vector<std::string>& ChoiceNames(CensusPattern);
+const std::vector<std::string>& ChoiceNames(SubPixel);
+const std::vector<std::string>& ChoiceNames(PreBlur);
+
 // Everything that decides what a matcher computes. Two matchers given the same pictures and the
 // same settings answer the same, bit for bit; how they get there is theirs. The initial values are
 // the recommended ones ("quality").
@@ -49,6 +65,10 @@ struct SgmSettings {
   // view is compared with (x - disparity, y) of the right one.
   int min_disparity = 0;      // px, -2048..2048
   int num_disparities = 128;  // px, 1..256
+
+  // The pictures, before anything else (condition_pair.h).
+  PreBlur pre_blur = PreBlur::kAutomatic;
+  bool match_gain = true;  // the right picture gets the left one's brightness and contrast
 
   // Cost (pixel_cost.h, census.h).
   MatchCost cost = MatchCost::kAdCensus;

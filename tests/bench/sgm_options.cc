@@ -11,14 +11,17 @@
 namespace vs::test {
 namespace {
 
-using Field = std::variant<int SgmSettings::*, bool SgmSettings::*, MatchCost SgmSettings::*,
-                           CensusPattern SgmSettings::*, SubPixel SgmSettings::*>;
+using Field =
+    std::variant<int SgmSettings::*, bool SgmSettings::*, MatchCost SgmSettings::*,
+                 CensusPattern SgmSettings::*, SubPixel SgmSettings::*, PreBlur SgmSettings::*>;
 
 const std::map<std::string_view, Field>& Fields() {
   using S = SgmSettings;
   static const std::map<std::string_view, Field> fields = {
       {"min_disparity", &S::min_disparity},
       {"num_disparities", &S::num_disparities},
+      {"pre_blur", &S::pre_blur},
+      {"match_gain", &S::match_gain},
       {"cost", &S::cost},
       {"census", &S::census},
       {"ad_limit", &S::ad_limit},
@@ -51,20 +54,6 @@ const std::map<std::string_view, Field>& Fields() {
   return fields;
 }
 
-const std::vector<std::string_view>& Choices(MatchCost) {
-  static const std::vector<std::string_view> names = {"birchfield_tomasi", "sad", "census",
-                                                      "ad_census"};
-  return names;
-}
-const std::vector<std::string_view>& Choices(CensusPattern) {
-  static const std::vector<std::string_view> names = {"5x5", "7x7", "9x7", "strided_3x3"};
-  return names;
-}
-const std::vector<std::string_view>& Choices(SubPixel) {
-  static const std::vector<std::string_view> names = {"off", "parabola", "equiangular"};
-  return names;
-}
-
 bool Parse(std::string_view text, int* value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), *value);
   return error == std::errc() && end == text.data() + text.size();
@@ -75,7 +64,7 @@ bool Parse(std::string_view text, bool* value) {
 }
 template <class Enum>
 bool Parse(std::string_view text, Enum* value) {
-  const auto& names = Choices(*value);
+  const auto& names = ChoiceNames(*value);
   for (size_t k = 0; k < names.size(); ++k) {
     if (names[k] != text) continue;
     *value = static_cast<Enum>(k);

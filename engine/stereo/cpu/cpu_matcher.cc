@@ -18,6 +18,7 @@
 #include "engine/base/str.h"
 #include "engine/stereo/cell_memory.h"
 #include "engine/stereo/census.h"
+#include "engine/stereo/condition_pair.h"
 #include "engine/stereo/cpu/kernels.h"
 #include "engine/stereo/cpu/sweep.h"
 #include "engine/stereo/padded_picture.h"
@@ -91,10 +92,13 @@ class CpuMatcher final : public StereoMatcher {
  public:
   explicit CpuMatcher(const Kernels* kernels) : kernels_(kernels), refiner_(*kernels->filters) {}
 
-  Result<DisparityMap> Match(const GreyImage& left, const GreyImage& right,
+  Result<DisparityMap> Match(const GreyImage& left_seen, const GreyImage& right_seen,
                              const SgmSettings& settings, int threads, BufferPool& pool) override {
     VS_RETURN_IF_ERROR(ValidateSettings(settings));
-    VS_RETURN_IF_ERROR(ValidatePair(left, right));
+    VS_RETURN_IF_ERROR(ValidatePair(left_seen, right_seen));
+    const PicturePair pair = ConditionPair(left_seen, right_seen, settings, pool);
+    const GreyImage& left = pair.left;
+    const GreyImage& right = pair.right;
     const int parts = std::clamp(threads, 1, 2 * (left.width() / kLeastColumns));
     VS_RETURN_IF_ERROR(Prepare(left, right, settings, parts));
     DisparityMap map =

@@ -10,6 +10,9 @@
 #include "engine/calibration/rig_file.h"
 #include "engine/sim/demo_rig.h"
 #include "engine/sim/ideal_stereo.h"
+#include "engine/stereo/sgm_presets.h"
+#include "engine/stereo/stereo_matcher.h"
+#include "tests/engine/stereo/map_difference.h"
 #include "tests/support/block_harness.h"
 #include "tests/support/count_allocations.h"
 #include "tests/support/temp_folder.h"
@@ -129,6 +132,44 @@ TEST_F(StereoBlocks, MatchingNamesWrongParameters) {
   EXPECT_TRUE(match.Run().ok());
   EXPECT_EQ(match.Set("num_disparities", int64_t{257}).code(), StatusCode::kOutOfRange);
   EXPECT_FALSE(match.Set("cost", std::string("ssd")).ok());
+}
+
+TEST_F(StereoBlocks, APresetIsTheBaseAndChangedParametersCountOnTop) {
+  SgmSettings expected = *ApplySgmPreset("strict");
+  expected.p2 = 20;
+  expected.census = CensusPattern::k7x7;
+  BufferPool pool;
+  const auto map = (*StereoMatchers::Get().Make("reference"))
+                       ->Match(Pair()->left->image, Pair()->right->image, expected, 2, pool);
+  ASSERT_TRUE(map.has_value());
+
+  BlockHarness match("SgmStereo");
+  match.Input("pair", Pair());
+  ASSERT_TRUE(match.Set("preset", std::string("strict")).ok());
+  ASSERT_TRUE(match.Set("p2", int64_t{20}).ok());
+  ASSERT_TRUE(match.Set("census", std::string("7x7")).ok());
+  ASSERT_TRUE(match.Start().ok());
+  ASSERT_TRUE(match.Run().ok());
+  EXPECT_EQ(MapDifference(*match.Output<DisparityMap>("disparity"), *map), "");
+  EXPECT_THAT(match.Set("preset", std::string("best")).ToString(), HasSubstr("quality"));
+}
+
+TEST_F(StereoBlocks, ARegionMasksTheRest) {
+  BlockHarness match("SgmStereo");
+  match.Input("pair", Pair());
+  for (const char* name : {"roi_x", "roi_y", "roi_width"}) {
+    ASSERT_TRUE(match.Set(name, int64_t{200}).ok());
+  }
+  ASSERT_TRUE(match.Start().ok());
+  ASSERT_TRUE(match.Run().ok());
+  const DisparityMap& map = *match.Output<DisparityMap>("disparity");
+  const auto masked = static_cast<uint8_t>(InvalidReason::kMasked);
+  EXPECT_EQ(map.reason.Row(199)[300], masked);
+  EXPECT_EQ(map.reason.Row(300)[400], masked);
+  EXPECT_NE(map.reason.Row(200)[200], masked);
+  EXPECT_NE(map.reason.Row(482)[399], masked);
+  ASSERT_TRUE(match.Set("roi_x", int64_t{2000}).ok());
+  EXPECT_THAT(match.Run().ToString(), HasSubstr("outside the picture"));
 }
 
 TEST_F(StereoBlocks, SpeckleFilterLeavesItsInputAlone) {

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/stereo/condition_pair.h"
+
 namespace vs {
 namespace {
 
@@ -454,7 +456,8 @@ class Naive {
 
 DisparityMap NaiveSgm(const GreyImage& left, const GreyImage& right, const SgmSettings& settings,
                       BufferPool& pool) {
-  return Naive(left, right, settings).Run(pool);
+  const PicturePair pair = ConditionPair(left, right, settings, pool);
+  return Naive(pair.left, pair.right, settings).Run(pool);
 }
 
 }  // namespace vs

@@ -19,6 +19,8 @@ inline SgmSettings MakeRandomSettings(std::mt19937& random, int largest_range) {
   SgmSettings s;
   s.min_disparity = pick(-12, 20);
   s.num_disparities = pick(1, largest_range);
+  s.pre_blur = static_cast<PreBlur>(Below(random, 4));
+  s.match_gain = Below(random, 2) == 0;
   s.cost = static_cast<MatchCost>(Below(random, 4));
   s.census = static_cast<CensusPattern>(Below(random, 4));
   s.ad_limit = pick(0, 16);
@@ -53,7 +55,8 @@ inline SgmSettings MakeRandomSettings(std::mt19937& random, int largest_range) {
 // For the message of a failing test.
 inline std::string Describe(const SgmSettings& s) {
   std::ostringstream text;
-  text << "range " << s.min_disparity << " + " << s.num_disparities << ", cost "
+  text << "range " << s.min_disparity << " + " << s.num_disparities << ", blur "
+       << static_cast<int>(s.pre_blur) << " gain " << s.match_gain << ", cost "
        << static_cast<int>(s.cost) << " census " << static_cast<int>(s.census) << " ad "
        << s.ad_limit << " grey " << s.grey_limit << " sobel " << s.sobel_cap << " outside "
        << s.outside_cost << ", window " << s.window_width << " x " << s.window_height << " smooth "

@@ -116,6 +116,8 @@ TEST_F(ReferenceMatcher, FindsAShiftedPicture) {
 TEST_F(ReferenceMatcher, WithoutPenaltiesTheCheapestPixelWins) {
   const RandomPair pair = MakeRandomPair(pool_, 40, 20, random_);
   SgmSettings settings{.num_disparities = 16,
+                       .pre_blur = PreBlur::kOff,
+                       .match_gain = false,
                        .cost = MatchCost::kSad,
                        .smooth_cost = false,
                        .directions = 1,
@@ -159,7 +161,8 @@ TEST_F(ReferenceMatcher, TheRightViewMirrorsTheLeft) {
     for (int x = 0; x < 60; ++x) left.Row(y)[x] = static_cast<uint8_t>(10 + Below(random_, 230));
     for (int x = 0; x < 60; ++x) right.Row(y)[x] = left.Row(y)[std::min(x + 5, 59)];
   }
-  const auto map = MatchRightView(*matcher_, left, right, {.num_disparities = 16}, 1, pool_);
+  const auto map =
+      MatchRightView(*matcher_, left, right, {0, 0, 64, 40}, {.num_disparities = 16}, 1, pool_);
   ASSERT_TRUE(map.has_value());
   EXPECT_NEAR(map->disparity.Row(10)[30], 16 * 5, 1);
   EXPECT_NEAR(map->disparity.Row(10)[5], 16 * 5, 1) << "the right view has its border on the right";

@@ -1,0 +1,191 @@
+#include "engine/stereo/condition_pair.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+
+namespace vs {
+namespace {
+
+constexpr int kBlock = 8;
+// So many blocks tell enough of a picture.
+constexpr int kBlocks = 4096;
+// Noise is cut off at the ends of the grey scale.
+constexpr int kLeastGrey = 6;
+constexpr int kGreatestGrey = 249;
+constexpr int kQuantiles = 19;
+// A smaller mean difference may be the scene's: the two cameras do not see the same. Sixteenths of
+// a grey level.
+constexpr int kLeastGreyDifference = 5 * 16;
+
+// Noise from which on smoothing gains more than it loses, sixteenths of a grey level.
+constexpr int kStrongBlurFrom = 29;
+
+// Weights of a pixel's neighbour and of itself, of 256: a Gaussian of sigma 0.5 and 0.7 px.
+struct BlurWeights {
+  uint16_t side;
+  uint16_t centre;
+};
+constexpr BlurWeights kLight = {27, 202};
+constexpr BlurWeights kStrong = {54, 148};
+
+// Mask response of one block; negative if the block's greys reach an end of the scale.
+int BlockResponse(const GreyImage& picture, int x0, int y0) {
+  int sum = 0;
+  uint8_t low = 255;
+  uint8_t high = 0;
+  for (int y = y0; y < y0 + kBlock; ++y) {
+    const uint8_t* above = picture.Row(y - 1) + x0;
+    const uint8_t* row = picture.Row(y) + x0;
+    const uint8_t* below = picture.Row(y + 1) + x0;
+    for (int x = 0; x < kBlock; ++x) {
+      const int corners = above[x - 1] + above[x + 1] + below[x - 1] + below[x + 1];
+      const int sides = above[x] + below[x] + row[x - 1] + row[x + 1];
+      sum += std::abs(corners - 2 * sides + 4 * row[x]);
+      low = std::min(low, row[x]);
+      high = std::max(high, row[x]);
+    }
+  }
+  return low < kLeastGrey || high > kGreatestGrey ? -1 : sum;
+}
+
+// One output pixel is (side * (a + c) + centre * b) / 256 of three neighbours.
+void BlurSpan(const uint8_t* a, const uint8_t* b, const uint8_t* c, int count, BlurWeights weights,
+              uint8_t* __restrict out) {
+  for (int x = 0; x < count; ++x) {
+    const auto sides = static_cast<uint16_t>(a[x] + c[x]);
+    out[x] = static_cast<uint8_t>(
+        static_cast<uint16_t>(weights.side * sides + weights.centre * b[x] + 128) >> 8);
+  }
+}
+
+// The rows beyond the border are the border's.
+GreyImage Blurred(const GreyImage& picture, BlurWeights weights, BufferPool& pool) {
+  const int width = picture.width();
+  const int height = picture.height();
+  GreyImage across(pool, width, height);
+  for (int y = 0; y < height; ++y) {
+    const uint8_t* row = picture.Row(y);
+    uint8_t* out = across.Row(y);
+    BlurSpan(row, row, row + 1, 1, weights, out);
+    BlurSpan(row, row + 1, row + 2, width - 2, weights, out + 1);
+    BlurSpan(row + width - 2, row + width - 1, row + width - 1, 1, weights, out + width - 1);
+  }
+  GreyImage out(pool, width, height);
+  for (int y = 0; y < height; ++y) {
+    BlurSpan(across.Row(std::max(y - 1, 0)), across.Row(y), across.Row(std::min(y + 1, height - 1)),
+             width, weights, out.Row(y));
+  }
+  return out;
+}
+
+PreBlur BlurFor(const GreyImage& left, const GreyImage& right, PreBlur asked) {
+  if (asked != PreBlur::kAutomatic) return asked;
+  const int noise = std::max(NoiseSixteenths(left), NoiseSixteenths(right));
+  return noise >= kStrongBlurFrom ? PreBlur::kStrong : PreBlur::kOff;
+}
+
+// Quantiles of the greys in columns [begin, end), in sixteenths of a grey level.
+std::array<int, kQuantiles> QuantilesOf(const GreyImage& picture, int begin, int end) {
+  std::array<int64_t, 256> counts = {};
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = begin; x < end; ++x) ++counts[picture.Row(y)[x]];
+  }
+  const int64_t pixels = static_cast<int64_t>(end - begin) * picture.height();
+  std::array<int, kQuantiles> quantiles = {};
+  int64_t below = 0;
+  int grey = 0;
+  for (int k = 0; k < kQuantiles; ++k) {
+    const int64_t wanted = pixels * (k + 1) / (kQuantiles + 1);
+    while (below + counts[grey] < wanted) below += counts[grey++];
+    const int64_t part = counts[grey] == 0 ? 0 : 16 * (wanted - below) / counts[grey];
+    quantiles[k] = 16 * grey - 8 + static_cast<int>(part);
+  }
+  return quantiles;
+}
+
+GreyImage Mapped(const GreyImage& picture, const GreyMap& map, BufferPool& pool) {
+  std::array<uint8_t, 256> table;
+  for (int grey = 0; grey < 256; ++grey) {
+    const int mapped = (map.gain * grey + map.offset + GreyMap::kOne / 2) >> 12;
+    table[grey] = static_cast<uint8_t>(std::clamp(mapped, 0, 255));
+  }
+  GreyImage out(pool, picture.width(), picture.height());
+  for (int y = 0; y < picture.height(); ++y) {
+    const uint8_t* row = picture.Row(y);
+    uint8_t* to = out.Row(y);
+    for (int x = 0; x < picture.width(); ++x) to[x] = table[row[x]];
+  }
+  return out;
+}
+
+}  // namespace
+
+int NoiseSixteenths(const GreyImage& picture) {
+  const int columns = (picture.width() - 2) / kBlock;
+  const int rows = (picture.height() - 2) / kBlock;
+  const int step = std::max(columns * rows / kBlocks, 1);
+  constexpr int kBin = 4;
+  std::array<int, 1024> counts = {};
+  int blocks = 0;
+  for (int k = 0; k < columns * rows; k += step) {
+    const int response = BlockResponse(picture, 1 + k % columns * kBlock, 1 + k / columns * kBlock);
+    if (response < 0) continue;
+    ++counts[std::min(response / kBin, 1023)];
+    ++blocks;
+  }
+  if (blocks == 0) return 0;
+  int bin = 0;
+  for (int below = counts[0]; below * 20 < blocks; below += counts[bin]) ++bin;
+  // For normally distributed noise of deviation s the mean response is 6 s sqrt(2 / pi); the 5 %
+  // blocks have 0.77 of it (measured).
+  return bin * kBin * 16 * 100 / (kBlock * kBlock * 479 * 77 / 100);
+}
+
+GreyMap MatchGreys(const GreyImage& left, const GreyImage& right, const SgmSettings& settings) {
+  const int width = left.width();
+  const int middle = settings.min_disparity + settings.num_disparities / 2;
+  // The same part of the scene in both, if it lies at the middle of the range.
+  const int shift = std::abs(middle) <= width / 2 ? middle : 0;
+  const auto l = QuantilesOf(left, std::max(shift, 0), width + std::min(shift, 0));
+  const auto r = QuantilesOf(right, std::max(-shift, 0), width - std::max(shift, 0));
+  int64_t sum_l = 0;
+  int64_t sum_r = 0;
+  int64_t sum_rr = 0;
+  int64_t sum_lr = 0;
+  int64_t difference = 0;
+  for (int k = 0; k < kQuantiles; ++k) {
+    sum_l += l[k];
+    sum_r += r[k];
+    sum_rr += int64_t{r[k]} * r[k];
+    sum_lr += int64_t{l[k]} * r[k];
+    difference += std::abs(l[k] - r[k]);
+  }
+  if (difference < int64_t{kQuantiles} * kLeastGreyDifference) return {};
+  const int64_t spread = kQuantiles * sum_rr - sum_r * sum_r;
+  // A standard deviation of less than 4 grey levels.
+  if (spread < int64_t{kQuantiles} * kQuantiles * 64 * 64) return {};
+  const int64_t gain = GreyMap::kOne * (kQuantiles * sum_lr - sum_l * sum_r) / spread;
+  if (gain < GreyMap::kOne / 2 || gain > GreyMap::kOne * 2) return {};
+  const int64_t offset = (GreyMap::kOne * sum_l - gain * sum_r) / (kQuantiles * 16);
+  return {static_cast<int>(gain), static_cast<int>(offset)};
+}
+
+PicturePair ConditionPair(const GreyImage& left, const GreyImage& right,
+                          const SgmSettings& settings, BufferPool& pool) {
+  PicturePair pair = {left, right};
+  // Before the gain, which would amplify the noise of one picture.
+  const PreBlur blur = BlurFor(left, right, settings.pre_blur);
+  if (settings.match_gain) {
+    const GreyMap map = MatchGreys(left, right, settings);
+    if (map != GreyMap{}) pair.right = Mapped(right, map, pool);
+  }
+  if (blur != PreBlur::kOff) {
+    const BlurWeights weights = blur == PreBlur::kLight ? kLight : kStrong;
+    pair = {Blurred(pair.left, weights, pool), Blurred(pair.right, weights, pool)};
+  }
+  return pair;
+}
+
+}  // namespace vs
