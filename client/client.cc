@@ -73,10 +73,6 @@ Result<void> Client::Logout() {
   return done;
 }
 
-void Client::UseCredential(const std::string& credential) {
-  connection_->SetCredential(credential);
-}
-
 Result<v1::WhoAmIResponse> Client::WhoAmI() {
   return Call(*connection_, &v1::SessionService::Stub::WhoAmI, {});
 }

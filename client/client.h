@@ -48,8 +48,6 @@ class Client {
   Result<v1::LoginResponse> Login(const std::string& user, const std::string& password);
   // Ends the session of Login.
   Result<void> Logout();
-  // An API key or the token of an earlier login, for all later calls.
-  void UseCredential(const std::string& credential);
   Result<v1::WhoAmIResponse> WhoAmI();
   Result<void> ChangePassword(const std::string& old_password, const std::string& new_password);
 

@@ -50,10 +50,6 @@ std::string RunStateWord(v1::SequenceRunState state) {
   return Word(v1::SequenceRunState_Name(state), "SEQUENCE_RUN_STATE_");
 }
 
-std::string ParameterTypeWord(v1::ParameterType type) {
-  return Word(v1::ParameterType_Name(type), "PARAMETER_TYPE_");
-}
-
 std::string StreamKindWord(v1::StreamKind kind) {
   return Word(v1::StreamKind_Name(kind), "STREAM_KIND_");
 }

@@ -19,7 +19,6 @@ std::string RoleWord(visionserver::v1::Role role);
 std::string CameraStateWord(visionserver::v1::CameraState state);
 std::string FeatureTypeWord(visionserver::v1::FeatureType type);
 std::string RunStateWord(visionserver::v1::SequenceRunState state);
-std::string ParameterTypeWord(visionserver::v1::ParameterType type);
 std::string StreamKindWord(visionserver::v1::StreamKind kind);
 std::string ResultClassWord(visionserver::v1::ResultClass result_class);
 

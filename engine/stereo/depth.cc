@@ -34,26 +34,11 @@ Result<DepthMap> DepthFromDisparity(const DisparityMap& map, BufferPool& pool) {
     float* out = depth.depth_m.Row(y);
     for (int x = 0; x < width; ++x) {
       const float sum = static_cast<float>(disparity[x]) + shift;
-      out[x] = disparity[x] != kInvalidDisparity && sum > 0 ? scale / sum : kUnknown;
+      // The choice before the division, so that this vectorises: what is unknown stays so.
+      out[x] = scale / (disparity[x] != kInvalidDisparity && sum > 0 ? sum : kUnknown);
     }
   }
   return depth;
-}
-
-Result<Image<float>> DisparityFromDepth(const DepthMap& map, BufferPool& pool) {
-  VS_RETURN_IF_ERROR(CheckGeometry(map.geometry));
-  Image<float> disparity(pool, map.depth_m.width(), map.depth_m.height());
-  const double scale = map.geometry.focal_px * map.geometry.baseline_m;
-  for (int y = 0; y < disparity.height(); ++y) {
-    const float* depth = map.depth_m.Row(y);
-    float* out = disparity.Row(y);
-    for (int x = 0; x < disparity.width(); ++x) {
-      out[x] = depth[x] > 0
-                   ? static_cast<float>(scale / depth[x] - map.geometry.principal_offset_px)
-                   : kUnknown;
-    }
-  }
-  return disparity;
 }
 
 }  // namespace vs

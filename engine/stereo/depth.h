@@ -13,7 +13,4 @@ namespace vs {
 // map's geometry is not known (focal length or baseline not positive).
 Result<DepthMap> DepthFromDisparity(const DisparityMap& map, BufferPool& pool);
 
-// The disparity in px that a point at `depth_m` has; NaN for NaN.
-Result<Image<float>> DisparityFromDepth(const DepthMap& map, BufferPool& pool);
-
 }  // namespace vs

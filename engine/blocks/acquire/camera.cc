@@ -2,15 +2,12 @@
 #include <memory>
 #include <utility>
 
-#include "engine/base/mailbox.h"
-#include "engine/base/mutex.h"
 #include "engine/camera/camera_hub.h"
+#include "engine/camera/intake.h"
 #include "engine/core/block.h"
 
 namespace vs {
 namespace {
-
-using Box = Mailbox<FramePtr>;
 
 class Camera final : public Block {
  public:
@@ -26,10 +23,6 @@ class Camera final : public Block {
               "configuration. Features may "
               "follow, as in gev:21000001?ExposureTimeAbs=5000."}};
 
-  Camera() {
-    box_.OnAvailable([this] { Wake(); });
-  }
-
   Status Start() override {
     if (environment().cameras == nullptr) {
       return FailedPrecondition("cameras need a server: run this sequence on one");
@@ -39,17 +32,13 @@ class Camera final : public Block {
     }
     VS_ASSIGN_OR_RETURN(const CameraUri uri, CameraUri::Parse(*address));
     VS_ASSIGN_OR_RETURN(auto camera, environment().cameras->Acquire(uri));
-    box_.Reopen(camera->Recorded() ? Box::Policy::kEvery : Box::Policy::kLatest);
-    VS_RETURN_IF_ERROR(camera->Start([this](FramePtr taken) { box_.Put(std::move(taken)); }));
-    MutexLock lock(mutex_);
-    camera_ = std::move(camera);
-    return {};
+    return intake_.Start(std::move(camera));
   }
 
-  bool Ready() override { return box_.Available(); }
+  bool Ready() override { return intake_.Available(); }
 
   Status Run() override {
-    const auto taken = box_.TryTake();
+    const auto taken = intake_.TryTake();
     if (!taken) return {};
     frame().source_number = (*taken)->number;
     frame().capture_ns = (*taken)->capture_ns;
@@ -59,27 +48,14 @@ class Camera final : public Block {
     return {};
   }
 
-  void Stop() override {
-    box_.Close();
-    std::shared_ptr<CameraSource> ended;
-    {
-      MutexLock lock(mutex_);
-      ended = std::exchange(camera_, nullptr);
-    }
-    if (ended != nullptr) ended->Stop();
-  }
+  void Stop() override { intake_.Stop(); }
 
-  uint64_t Dropped() const override { return box_.Dropped(); }
+  uint64_t Dropped() const override { return intake_.Dropped(); }
 
-  SourceReport Report() const override {
-    MutexLock lock(mutex_);
-    return camera_ == nullptr ? SourceReport() : ReportOf(camera_->Stats());
-  }
+  SourceReport Report() const override { return intake_.Report(); }
 
  private:
-  Box box_;
-  mutable Mutex mutex_;  // Report comes on another thread
-  std::shared_ptr<CameraSource> camera_ VS_GUARDED_BY(mutex_);
+  Intake<CameraSource, FramePtr> intake_{[this] { Wake(); }};
 };
 
 VS_REGISTER_BLOCK(Camera, {.category = "Acquire",

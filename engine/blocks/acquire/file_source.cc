@@ -2,15 +2,12 @@
 #include <memory>
 #include <utility>
 
-#include "engine/base/mailbox.h"
-#include "engine/base/mutex.h"
 #include "engine/camera/file_pair_source.h"
+#include "engine/camera/intake.h"
 #include "engine/core/block.h"
 
 namespace vs {
 namespace {
-
-using Box = Mailbox<StereoFramePtr>;
 
 class FileSource final : public Block {
  public:
@@ -105,10 +102,6 @@ class FileSource final : public Block {
        .doc = "Column of the right picture's optical axis minus that of the left "
               "one."}};
 
-  FileSource() {
-    box_.OnAvailable([this] { Wake(); });
-  }
-
   Status Start() override {
     if (folder->empty()) return InvalidArgument("set folder to the folder with the pictures");
     FilePairOptions options;
@@ -125,18 +118,13 @@ class FileSource final : public Block {
                                            .cy_px = *center_y_px,
                                            .principal_offset_px = *offset_px};
     }
-    auto source = MakeFilePairSource(std::move(options));
-    box_.Reopen(Box::Policy::kEvery);
-    VS_RETURN_IF_ERROR(source->Start([this](StereoFramePtr read) { box_.Put(std::move(read)); }));
-    MutexLock lock(mutex_);
-    source_ = std::move(source);
-    return {};
+    return intake_.Start(MakeFilePairSource(std::move(options)));
   }
 
-  bool Ready() override { return box_.Available(); }
+  bool Ready() override { return intake_.Available(); }
 
   Status Run() override {
-    const auto read = box_.TryTake();
+    const auto read = intake_.TryTake();
     if (!read) return {};
     frame().source_number = (*read)->number;
     frame().capture_ns = (*read)->left->capture_ns;
@@ -145,27 +133,14 @@ class FileSource final : public Block {
     return {};
   }
 
-  void Stop() override {
-    box_.Close();
-    std::unique_ptr<StereoSource> ended;
-    {
-      MutexLock lock(mutex_);
-      ended = std::exchange(source_, nullptr);
-    }
-    if (ended != nullptr) ended->Stop();
-  }
+  void Stop() override { intake_.Stop(); }
 
-  uint64_t Dropped() const override { return box_.Dropped(); }
+  uint64_t Dropped() const override { return intake_.Dropped(); }
 
-  SourceReport Report() const override {
-    MutexLock lock(mutex_);
-    return source_ == nullptr ? SourceReport() : ReportOf(source_->Stats());
-  }
+  SourceReport Report() const override { return intake_.Report(); }
 
  private:
-  Box box_;
-  mutable Mutex mutex_;  // Report comes on another thread
-  std::unique_ptr<StereoSource> source_ VS_GUARDED_BY(mutex_);
+  Intake<StereoSource, StereoFramePtr> intake_{[this] { Wake(); }};
 };
 
 VS_REGISTER_BLOCK(FileSource,

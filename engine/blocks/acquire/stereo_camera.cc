@@ -3,16 +3,13 @@
 #include <memory>
 #include <utility>
 
-#include "engine/base/mailbox.h"
-#include "engine/base/mutex.h"
 #include "engine/camera/camera_hub.h"
+#include "engine/camera/intake.h"
 #include "engine/camera/stereo_source.h"
 #include "engine/core/block.h"
 
 namespace vs {
 namespace {
-
-using Box = Mailbox<StereoFramePtr>;
 
 class StereoCamera final : public Block {
  public:
@@ -45,26 +42,18 @@ class StereoCamera final : public Block {
               "picture period, at most 5 ms. Never more than half the picture period is used. "
               "Cameras that count triggers are paired by that count instead."}};
 
-  StereoCamera() {
-    box_.OnAvailable([this] { Wake(); });
-  }
-
   Status Start() override {
     VS_ASSIGN_OR_RETURN(auto left_camera, Open(left));
     VS_ASSIGN_OR_RETURN(auto right_camera, Open(right));
     auto source = MakeCameraPair(std::move(left_camera), std::move(right_camera),
                                  {.tolerance_ns = static_cast<int64_t>(*tolerance_ms * 1e6)});
-    box_.Reopen(source->Recorded() ? Box::Policy::kEvery : Box::Policy::kLatest);
-    VS_RETURN_IF_ERROR(source->Start([this](StereoFramePtr taken) { box_.Put(std::move(taken)); }));
-    MutexLock lock(mutex_);
-    source_ = std::move(source);
-    return {};
+    return intake_.Start(std::move(source));
   }
 
-  bool Ready() override { return box_.Available(); }
+  bool Ready() override { return intake_.Available(); }
 
   Status Run() override {
-    const auto taken = box_.TryTake();
+    const auto taken = intake_.TryTake();
     if (!taken) return {};
     const StereoFrame& stereo = **taken;
     frame().source_number = stereo.number;
@@ -75,22 +64,11 @@ class StereoCamera final : public Block {
     return {};
   }
 
-  void Stop() override {
-    box_.Close();
-    std::unique_ptr<StereoSource> ended;
-    {
-      MutexLock lock(mutex_);
-      ended = std::exchange(source_, nullptr);
-    }
-    if (ended != nullptr) ended->Stop();
-  }
+  void Stop() override { intake_.Stop(); }
 
-  uint64_t Dropped() const override { return box_.Dropped(); }
+  uint64_t Dropped() const override { return intake_.Dropped(); }
 
-  SourceReport Report() const override {
-    MutexLock lock(mutex_);
-    return source_ == nullptr ? SourceReport() : ReportOf(source_->Stats());
-  }
+  SourceReport Report() const override { return intake_.Report(); }
 
  private:
   Result<std::shared_ptr<CameraSource>> Open(const Param<std::string>& address) const {
@@ -108,9 +86,7 @@ class StereoCamera final : public Block {
     return camera;
   }
 
-  Box box_;
-  mutable Mutex mutex_;  // Report comes on another thread
-  std::unique_ptr<StereoSource> source_ VS_GUARDED_BY(mutex_);
+  Intake<StereoSource, StereoFramePtr> intake_{[this] { Wake(); }};
 };
 
 VS_REGISTER_BLOCK(StereoCamera,

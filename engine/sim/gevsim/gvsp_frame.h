@@ -33,8 +33,6 @@ struct GvspPacket {
   std::array<uint8_t, 48> header;
   std::array<iovec, 2> parts;
   int part_count = 0;
-
-  size_t PayloadBytes() const { return parts[0].iov_len + (part_count > 1 ? parts[1].iov_len : 0); }
 };
 // `number` is below PacketCount. The packet must not be moved afterwards.
 void BuildPacket(const GvspFrame& frame, uint32_t number, GvspPacket& packet);

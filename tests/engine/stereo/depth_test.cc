@@ -42,16 +42,6 @@ TEST_F(Depth, CountsTheOffsetsOfRangeAndPrincipalPoints) {
   EXPECT_TRUE(std::isnan(depth->depth_m.Row(0)[2]));
 }
 
-TEST_F(Depth, TurnsBackIntoDisparity) {
-  DisparityMap map = Map({{960, 488, 0}});
-  map.geometry.principal_offset_px = 2;
-  const auto disparity = DisparityFromDepth(*DepthFromDisparity(map, pool_), pool_);
-  ASSERT_TRUE(disparity.has_value());
-  EXPECT_FLOAT_EQ(disparity->Row(0)[0], 60.0F);
-  EXPECT_FLOAT_EQ(disparity->Row(0)[1], 30.5F);
-  EXPECT_TRUE(std::isnan(disparity->Row(0)[2]));
-}
-
 TEST_F(Depth, NeedsTheGeometry) {
   DisparityMap map = Map({{960}});
   map.geometry.focal_px = 0;
