@@ -3,25 +3,29 @@
 # starts cameras and server, and says where to look.
 #
 #   deploy/run.sh [--duration SECONDS] [--fps N] [--port N] [--folder DIR] [--data DIR]
+#                 [--wait SECONDS]
 #
 #   --duration SECONDS  end by itself after so many seconds of depth; without it, Ctrl-C ends it
 #   --fps N             pairs per second that the cameras are triggered for (default 10)
 #   --port N            where the server listens on this machine (default 50051; 0: any free port)
 #   --folder DIR        serve the picture pairs of a folder in place of the simulated scene
 #   --data DIR          what the server stores (default: ~/.local/state/visionserver-demo)
+#   --wait SECONDS      give up when no depth comes for so long (default 60)
 #
-# Exit code 0 only if depth was streamed.
+# Where VISIONSERVER_BIN names a folder with the programs, nothing is installed or built.
+#
+# Exit code: 0 if depth was streamed to the end, 130 after Ctrl-C, 2 for wrong usage, otherwise 1.
 set -euo pipefail
-cd "$(dirname "$0")/.."
 
 usage() { sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "$0"; }
 die() { printf 'run.sh: %s\n' "$*" >&2; exit "${code:-1}"; }
-number() { [[ $2 =~ ^[0-9]+([.][0-9]+)?$ ]] || code=2 die "$1 needs a number, not \"$2\""; }
+whole() { [[ $2 =~ ^[0-9]{1,9}$ ]] || code=2 die "$1 needs a whole number, not \"$2\""; }
 
-duration='' fps=10 port=50051 folder='' data=${XDG_STATE_HOME:-$HOME/.local/state}/visionserver-demo
+duration='' fps=10 port=50051 folder='' wait=60
+data=${XDG_STATE_HOME:-$HOME/.local/state}/visionserver-demo
 while (($#)); do
   case $1 in
-    --duration | --fps | --port | --folder | --data)
+    --duration | --fps | --port | --folder | --data | --wait)
       (($# > 1)) || code=2 die "$1 needs a value; see --help"
       printf -v "${1#--}" %s "$2"
       shift 2 ;;
@@ -29,59 +33,108 @@ while (($#)); do
     *) code=2 die "unknown option $1; see --help" ;;
   esac
 done
-[[ -z $duration ]] || number --duration "$duration"
-number --fps "$fps"
-number --port "$port"
+[[ -z $duration ]] || whole --duration "$duration"
+whole --port "$port"
+whole --wait "$wait"
+[[ $fps =~ ^[0-9]+([.][0-9]+)?$ && $fps =~ [1-9] ]] ||
+  code=2 die "--fps needs a number above 0, not \"$fps\""
+[[ -z $folder || -d $folder ]] || code=2 die "--folder: there is no folder $folder"
+folder=${folder:+$(realpath -- "$folder")}
+data=$(realpath -m -- "$data")
+bin=$(realpath -m -- "${VISIONSERVER_BIN:-$(dirname "$0")/../build/release/bin}")
 
-deploy/prepare.sh
-bin=$PWD/build/release/bin
+cd "$(dirname "$0")/.."
+[[ -n ${VISIONSERVER_BIN:-} ]] || deploy/prepare.sh
 
 # What we start is ours to end, whatever happens.
-children=()
+cameras='' server=''
 work=$(mktemp -d)
+
+# Each child has a session of its own, so that the terminal's Ctrl-C reaches this script alone and
+# the server is asked once, which it takes as time to drain. Nothing outlives this script.
+apart() { exec setsid setpriv --pdeathsig TERM "$@"; }
+
+# The server first: it drains while its cameras still live.
 finish() {
-  trap - EXIT INT TERM
-  ((${#children[@]} == 0)) || kill "${children[@]}" 2>/dev/null || true
-  wait 2>/dev/null || true
+  local code=$? name
+  trap - EXIT HUP INT TERM
+  for name in server cameras; do
+    [[ -n ${!name} ]] || continue
+    kill "${!name}" 2>/dev/null || true
+    if wait "${!name}"; then
+      echo "The $name ended in order."
+    else
+      echo "run.sh: the $name did not end in order: $(last_words)" >&2
+      ((code)) || code=1
+    fi
+  done
   rm -rf "$work"
+  exit "$code"
 }
 trap finish EXIT
+trap 'exit 129' HUP
 trap 'exit 130' INT
 trap 'exit 143' TERM
 
-# Waits until `file` has a line that matches; ends with the reason when process `pid` has ended.
-await() { # file pattern pid what
-  until grep -qE "$2" "$1"; do
-    kill -0 "$3" 2>/dev/null || die "$4 ended: $(tail -n 3 "$1" "$1.err" 2>/dev/null)"
+last_words() { tail -qn 3 "$work"/*.err 2>/dev/null || true; }
+
+# Ends with the reason when cameras or server have ended by themselves.
+all_live() {
+  local name pid status
+  for name in cameras server; do
+    pid=${!name}
+    if [[ -z $pid ]] || kill -0 "$pid" 2>/dev/null; then continue; fi
+    status=0
+    wait "$pid" || status=$?
+    printf -v "$name" ''
+    die "the $name ended with code $status: $(last_words)"
+  done
+}
+
+# Waits until a command succeeds; gives up after --wait seconds.
+await() { # what-failed command...
+  local what=$1 end=$((SECONDS + 10#$wait))
+  shift
+  until "$@"; do
+    all_live
+    ((SECONDS < end)) || die "$what within $((10#$wait)) s: $(last_words)"
     sleep 0.1
   done
 }
+
+# The server's newest line about depth, "stereo_depth: 9.8 fps, 85 ms latency, 42 frames, 0 dropped".
+report() { grep '^stereo_depth: ' "$work/server" | tail -n 1; }
+frames() { report | sed 's/.* \([0-9]*\) frames.*/\1/'; }
+more_frames_than() { (($(frames) > $1)); }
 
 mkdir -p "$data"/{sequences,rigs}
 chmod 700 "$data"
 [[ -e $data/sequences/stereo_depth.json ]] || cp deploy/demo/stereo_depth.json "$data/sequences/"
 [[ -e $data/rigs/demo.json ]] || cp deploy/demo/rig.json "$data/rigs/demo.json"
-sed "s|@DATA@|$data|; s|@PORT@|$port|" deploy/demo/server.conf >"$work/server.conf"
+quoted=${data//\\/\\\\}
+quoted=${quoted//\"/\\\"}
+config=$(<deploy/demo/server.conf)
+config=${config//@DATA@/"$quoted"}
+printf '%s\n' "${config//@PORT@/$((10#$port))}" >"$work/server.conf"
 
-"$bin/gevsim" --fps "$fps" ${folder:+--folder "$folder"} \
+apart "$bin/gevsim" --fps "$fps" ${folder:+--folder "$folder"} \
   >"$work/cameras" 2>"$work/cameras.err" &
-children+=($!)
-await "$work/cameras" '^gevsim ready' $! 'the simulated rig'
+cameras=$!
+await 'the cameras were not ready' grep -qs '^gevsim ready' "$work/cameras"
 
-"$bin/visionserver" --config "$work/server.conf" --report 1 \
+apart "$bin/visionserver" --config "$work/server.conf" --report 1 \
   >"$work/server" 2>"$work/server.err" &
 server=$!
-children+=("$server")
-await "$work/server" '^stereo_depth: [0-9.]+ fps' "$server" 'the server'
+await "no depth came from the sequence $data/sequences/stereo_depth.json" \
+  grep -qs '^stereo_depth: ' "$work/server"
 
 address=$(sed -n 's/^VisionServer .* listens on \([^ ]*\).*/\1/p' "$work/server")
 fingerprint=$(sed -n 's/^certificate fingerprint (SHA-256): //p' "$work/server")
 password=$(sed -n 's/^one-time password of the user admin.*: //p' "$work/server")
-rate() { sed -n 's/^stereo_depth: \([0-9.]* fps\).*/\1/p' "$work/server" | tail -n 1; }
 
 cat <<TEXT
 
-VisionServer streams depth from two simulated GigE cameras: $(rate)
+VisionServer streams depth from two simulated GigE cameras: $(report | grep -o '[0-9.]* fps')
 
   address      $address
   fingerprint  $fingerprint
@@ -96,15 +149,15 @@ TEXT
 [[ -n $duration ]] || echo 'Ctrl-C ends it.'
 
 started=$SECONDS
+first=$(frames)
 shown=''
-while kill -0 "$server" 2>/dev/null; do
-  if [[ -n $duration ]] && ((SECONDS - started >= ${duration%.*})); then break; fi
-  now=$(grep -E '^stereo_depth: ' "$work/server" | tail -n 1)
+until [[ -n $duration ]] && ((SECONDS - started >= 10#$duration)); do
+  all_live
+  now=$(report)
   if [[ -t 1 ]]; then printf '\r\033[K%s' "$now"; elif [[ $now != "$shown" ]]; then echo "$now"; fi
   shown=$now
   sleep 1
 done
-[[ -t 1 ]] && echo
-kill -0 "$server" 2>/dev/null || die "the server ended: $(tail -n 3 "$work/server.err")"
-
-echo "Summary: $(grep -E '^stereo_depth: ' "$work/server" | tail -n 1)"
+[[ ! -t 1 ]] || echo
+await 'no more depth came' more_frames_than "$first"
+echo "Summary: $(report)"

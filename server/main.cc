@@ -69,14 +69,16 @@ void Greet(const Server& server) {
   std::fflush(stdout);
 }
 
-// One line for each sequence that has completed a frame: "stereo_depth: 9.8 fps, 85 ms latency, 0
-// dropped".
+// One line for each sequence that has completed a frame without error: "stereo_depth: 9.8 fps, 85
+// ms latency, 42 frames, 0 dropped".
 void Report(Server& server) {
   for (const SequenceStatus& status : server.vision().sequences().List()) {
     const RunStats& stats = status.stats;
-    if (stats.frames == 0) continue;
-    std::printf("%s: %.1f fps, %.0f ms latency, %llu dropped\n", status.id.c_str(),
+    const uint64_t good_frames = stats.frames - stats.failed_frames;
+    if (good_frames == 0) continue;
+    std::printf("%s: %.1f fps, %.0f ms latency, %llu frames, %llu dropped\n", status.id.c_str(),
                 stats.frames_per_second, static_cast<double>(stats.latency_p50_ns) / 1e6,
+                static_cast<unsigned long long>(good_frames),
                 static_cast<unsigned long long>(stats.dropped));
   }
   std::fflush(stdout);
