@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kBlock = 8;
 // So many blocks tell enough of a picture.
-constexpr int kBlocks = 4096;
+constexpr int kBlocks = 1024;
 // Noise is cut off at the ends of the grey scale.
 constexpr int kLeastGrey = 6;
 constexpr int kGreatestGrey = 249;

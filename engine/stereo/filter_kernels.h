@@ -9,17 +9,17 @@ namespace vs {
 //
 // The rows that they read hold stored disparities, widened: they may be read kFilterMargin pixels
 // to the left of x = 0 and kFilterMargin + kFilterLanes to the right of the last pixel.
-inline constexpr int kFilterMargin = 2;
+inline constexpr int kFilterMargin = 3;
 inline constexpr int kFilterLanes = 64;
 
 struct FilterKernels {
   // The median of 3 x 3 or 5 x 5 pixels: `rows` are the 3 or 5 rows around.
   void (*median3)(const uint16_t* const* rows, int width, uint16_t* out);
   void (*median5)(const uint16_t* const* rows, int width, uint16_t* out);
-  // The gated median of 5 x 5 pixels (gated_filter.h); `greys` are as wide as the rows, and no
-  // disparity is greater than `greatest`.
+  // The gated median of 5 x 5 pixels (gated_filter.h) where the centre is valid, anything where it
+  // is not; `greys` are as wide as the rows.
   void (*gated_median5)(const uint16_t* const* rows, const uint16_t* const* greys, int width,
-                        int gate, int greatest, uint16_t* out);
+                        int gate, uint16_t* out);
 };
 
 // For every processor.

@@ -42,30 +42,43 @@ inline void Order(Lanes& low, Lanes& high) {
   low = less;
 }
 
-// The median of kCount values in each lane. By forgetful selection: of any kCount / 2 + 2 values
-// neither the least nor the greatest can be the median, so both are forgotten and one value more is
-// looked at, until one is left.
-template <int kCount>
-inline Lanes MedianOf(Lanes (&values)[kCount]) {
-  int first = 0;
-  int last = kCount / 2 + 1;
-  for (int next = last + 1; last - first >= 2; ++next) {
-    for (int k = first + 1; k <= last; ++k) Order(values[first], values[k]);
-    for (int k = first + 1; k < last; ++k) Order(values[k], values[last]);
-    ++first;
-    if (next < kCount) {
-      values[last] = values[next];
-    } else {
-      --last;
-    }
+// Orders values[kFirst .. kLast] just so far that the least comes first and the greatest last.
+template <int kFirst, int kLast, int kCount>
+inline __attribute__((always_inline)) void FindEnds(Lanes (&values)[kCount]) {
+#pragma GCC unroll 16
+  for (int k = 0; kFirst + k < kLast - k; ++k) Order(values[kFirst + k], values[kLast - k]);
+    // The lesser ones are now in the first half, the greater ones in the second; a middle one in
+    // both.
+#pragma GCC unroll 16
+  for (int k = kFirst + 1; k <= (kFirst + kLast) / 2; ++k) Order(values[kFirst], values[k]);
+#pragma GCC unroll 16
+  for (int k = (kFirst + kLast + 1) / 2; k < kLast; ++k) Order(values[k], values[kLast]);
+}
+
+// The median of kCount values (an odd number) in each lane. By forgetful selection: of any
+// kCount / 2 + 2 values neither the least nor the greatest can be the median, so both are forgotten
+// and one value more is looked at, until one is left. All indices are known when this is compiled,
+// so that the values stay in registers.
+template <int kCount, int kFirst = 0>
+inline __attribute__((always_inline)) Lanes MedianOf(Lanes (&values)[kCount]) {
+  // Each round looks at one value less: kFirst .. kLast, of which the last one is new.
+  constexpr int kLast = kCount / 2 + 1;
+  if constexpr (kFirst == kLast - 1) {
+    return values[kFirst];
+  } else {
+    FindEnds<kFirst, kLast>(values);
+    // The greatest gives its place to the next value; the least is left behind.
+    constexpr int kNext = kLast + 1 + kFirst;
+    if constexpr (kNext < kCount) values[kLast] = values[kNext];
+    return MedianOf<kCount, kFirst + 1>(values);
   }
-  return values[first];
 }
 
 template <int kSize>
 void MedianRow(const uint16_t* const* rows, int width, uint16_t* out) {
   Lanes values[kSize * kSize];
   for (int x = 0; x < width; x += kLaneCount) {
+#pragma GCC unroll 25
     for (int k = 0; k < kSize * kSize; ++k) {
       values[k] = LoadLanes(rows[k / kSize] + x + k % kSize - kSize / 2);
     }
@@ -73,43 +86,28 @@ void MedianRow(const uint16_t* const* rows, int width, uint16_t* out) {
   }
 }
 
-constexpr int kGatedSize = 5;
-constexpr int kGatedCount = kGatedSize * kGatedSize;
-
-// The value of rank count / 2 in each lane, found bit by bit from the top: the greatest value that
-// at most count / 2 members lie below.
-inline Lanes SelectMedian(const Lanes (&members)[kGatedCount], const Lanes& rank, int top_bit) {
-  Lanes median = {};
-  for (int bit = top_bit; bit != 0; bit >>= 1) {
-    const Lanes limit = median | AllLanes(bit);
-    Lanes below = {};
-    for (const Lanes& value : members) below -= static_cast<Lanes>(value < limit);
-    median = below <= rank ? limit : median;
-  }
-  return median;
-}
-
+// The window's pixels that are no members become, in turn, greater and less than any member. So
+// the median of all is the member of rank count / 2.
 void GatedMedianRow(const uint16_t* const* rows, const uint16_t* const* greys, int width, int gate,
-                    int greatest, uint16_t* out) {
-  int top_bit = 1;
-  while (top_bit * 2 <= greatest) top_bit *= 2;
+                    uint16_t* out) {
+  constexpr int kSize = 5;
   const Lanes low = AllLanes(gate);
   const Lanes span = AllLanes(2 * gate);
   for (int x = 0; x < width; x += kLaneCount) {
-    // Members keep their disparity, the others become greater than any.
-    Lanes members[kGatedCount];
-    Lanes count = {};
-    const Lanes centre = LoadLanes(greys[kGatedSize / 2] + x) - low;
-    for (int k = 0; k < kGatedCount; ++k) {
-      const int from = x + k % kGatedSize - kGatedSize / 2;
-      const Lanes disparity = LoadLanes(rows[k / kGatedSize] + from);
+    Lanes values[kSize * kSize];
+    Lanes stand_in = {};
+    const Lanes centre = LoadLanes(greys[kSize / 2] + x) - low;
+#pragma GCC unroll 25
+    for (int k = 0; k < kSize * kSize; ++k) {
+      const int from = x + k % kSize - kSize / 2;
+      const Lanes disparity = LoadLanes(rows[k / kSize] + from);
       // -gate <= step <= gate in one comparison of unsigned numbers.
-      const Lanes step = LoadLanes(greys[k / kGatedSize] + from) - centre;
+      const Lanes step = LoadLanes(greys[k / kSize] + from) - centre;
       const auto absent = static_cast<Lanes>((step > span) | (disparity == 0));
-      members[k] = disparity | absent;
-      count += absent + 1;  // absent is 0 or 0xffff
+      stand_in ^= absent;
+      values[k] = (disparity & ~absent) | (stand_in & absent);
     }
-    PutLanes(SelectMedian(members, count >> 1, top_bit), x, width, out);
+    PutLanes(MedianOf(values), x, width, out);
   }
 }
 

@@ -1,8 +1,7 @@
 #include "engine/stereo/gated_filter.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdlib>
+#include <cstring>
 
 #include "engine/stereo/selection.h"
 #include "engine/stereo/widened_rows.h"
@@ -13,47 +12,65 @@ namespace {
 constexpr int kMedianSize = 5;
 constexpr int kFillRadius = 3;
 constexpr int kFillSize = 2 * kFillRadius + 1;
-constexpr int kFillCount = kFillSize * kFillSize;
 constexpr int kLeastMembers = 12;
 constexpr int kAgreeing = kDisparityScale;  // 1 px
 
-// kInvalidDisparity when the neighbours are too few or disagree.
-uint16_t FillValue(const DisparityMap& map, const GreyImage& left, int gate, int x, int y) {
-  std::array<uint16_t, kFillCount> members;
-  int count = 0;
-  const int centre = left.Row(y)[x];
-  for (int v = std::max(y - kFillRadius, 0); v <= std::min(y + kFillRadius, left.height() - 1);
-       ++v) {
-    const uint16_t* disparity = map.disparity.Row(v);
-    const uint8_t* grey = left.Row(v);
-    for (int u = std::max(x - kFillRadius, 0); u <= std::min(x + kFillRadius, left.width() - 1);
-         ++u) {
-      if (disparity[u] != kInvalidDisparity && std::abs(grey[u] - centre) <= gate) {
-        members[count++] = disparity[u];
-      }
-    }
+// A row of a fill window, side by side; one lane too many.
+using Lanes = uint16_t __attribute__((vector_size(16)));
+constexpr Lanes kBeyondWindow = {0, 0, 0, 0, 0, 0, 0, 0xffff};
+
+Lanes LoadLanes(const uint16_t* from) {
+  Lanes lanes;
+  std::memcpy(&lanes, from, sizeof lanes);
+  return lanes;
+}
+
+int SumOf(const Lanes& lanes) {
+  int sum = 0;
+  for (int k = 0; k < 8; ++k) sum += lanes[k];
+  return sum;
+}
+
+// Of the window around pixel x of its middle row; kInvalidDisparity when the members are too few or
+// disagree.
+uint16_t FillValue(const uint16_t* const* rows, const uint16_t* const* greys, int gate, int x) {
+  Lanes members[kFillSize];  // those that are none become greater than any
+  Lanes present = {};
+  const auto centre = static_cast<uint16_t>(greys[kFillRadius][x] - gate);
+  for (int k = 0; k < kFillSize; ++k) {
+    const Lanes disparity = LoadLanes(rows[k] + x - kFillRadius);
+    const Lanes step = LoadLanes(greys[k] + x - kFillRadius) - centre;
+    const auto absent = static_cast<Lanes>((step > static_cast<uint16_t>(2 * gate)) |
+                                           (disparity == kInvalidDisparity)) |
+                        kBeyondWindow;
+    members[k] = disparity | absent;
+    present += absent + 1;  // absent is 0 or 0xffff
   }
+  const int count = SumOf(present);
   if (count < kLeastMembers) return kInvalidDisparity;
-  uint16_t* const begin = members.data();
-  std::nth_element(begin, begin + count / 2, begin + count);
-  const uint16_t median = begin[count / 2];
-  const auto agreeing =
-      std::count_if(begin, begin + count, [&](int d) { return std::abs(d - median) <= kAgreeing; });
-  return agreeing * 10 >= count * 7 ? median : kInvalidDisparity;
+  // The greatest value that at most count / 2 members lie below, bit by bit.
+  int median = 0;
+  for (int bit = 0x8000; bit != 0; bit >>= 1) {
+    const auto limit = static_cast<uint16_t>(median | bit);
+    Lanes below = {};
+    for (const Lanes& row : members) below -= static_cast<Lanes>(row < limit);
+    if (SumOf(below) <= count / 2) median = limit;
+  }
+  Lanes agreeing = {};
+  const auto least = static_cast<uint16_t>(std::max(median - kAgreeing, 0));
+  const auto span = static_cast<uint16_t>(median + kAgreeing - least);
+  for (const Lanes& row : members) agreeing -= static_cast<Lanes>(row - least <= span);
+  return SumOf(agreeing) * 10 >= count * 7 ? static_cast<uint16_t>(median) : kInvalidDisparity;
 }
 
 // How many valid pixels each fill window of a row has, whatever their grey.
-void CountValid(const DisparityMap& in, int y, uint16_t* columns, uint16_t* counts) {
-  const int width = in.disparity.width();
-  const int top = std::max(y - kFillRadius, 0);
-  const int bottom = std::min(y + kFillRadius, in.disparity.height() - 1);
-  // With room for the window on both sides.
-  std::fill(columns, columns + width + kFillSize, uint16_t{0});
-  uint16_t* column = columns + kFillRadius;
-  for (int v = top; v <= bottom; ++v) {
-    const uint16_t* row = in.disparity.Row(v);
-    for (int x = 0; x < width; ++x) {
-      column[x] = static_cast<uint16_t>(column[x] + (row[x] != kInvalidDisparity ? 1 : 0));
+void CountValid(const uint16_t* const* rows, int width, uint16_t* columns, uint16_t* counts) {
+  const int end = width + 2 * kFillRadius;
+  std::fill(columns, columns + end, uint16_t{0});
+  for (int k = 0; k < kFillSize; ++k) {
+    const uint16_t* row = rows[k] - kFillRadius;
+    for (int x = 0; x < end; ++x) {
+      columns[x] = static_cast<uint16_t>(columns[x] + (row[x] != kInvalidDisparity ? 1 : 0));
     }
   }
   for (int x = 0; x < width; ++x) {
@@ -75,30 +92,31 @@ void GatedFilterRows(const DisparityMap& in, const GreyImage& left,
   uint16_t* const median = memory->rows.data();
   uint16_t* const columns = median + row_size;
   uint16_t* const counts = columns + row_size;
-  WidenedRows rows(width, height, kMedianSize, WidenedRows::Border::kZero, &memory->disparities);
-  WidenedRows greys(width, height, kMedianSize, WidenedRows::Border::kZero, &memory->greys);
-  const uint16_t* around[kMedianSize];
-  const uint16_t* greys_around[kMedianSize];
+  WidenedRows rows(width, height, kFillSize, WidenedRows::Border::kZero, &memory->disparities);
+  WidenedRows greys(width, height, kFillSize, WidenedRows::Border::kZero, &memory->greys);
+  const uint16_t* around[kFillSize];
+  const uint16_t* greys_around[kFillSize];
+  constexpr int kInner = (kFillSize - kMedianSize) / 2;
   for (int y = begin; y < end; ++y) {
     uint16_t* disparity = out->disparity.Row(y);
     std::copy_n(in.disparity.Row(y), width, disparity);
     std::copy_n(in.confidence.Row(y), width, out->confidence.Row(y));
     std::copy_n(in.reason.Row(y), width, out->reason.Row(y));
+    rows.Load(
+        y, [&](int from) { return in.disparity.Row(from); }, around);
+    greys.Load(
+        y, [&](int from) { return left.Row(from); }, greys_around);
     if (options.median) {
-      rows.Load(
-          y, [&](int from) { return in.disparity.Row(from); }, around);
-      greys.Load(
-          y, [&](int from) { return left.Row(from); }, greys_around);
-      kernels.gated_median5(around, greys_around, width, options.gate, options.greatest, median);
+      kernels.gated_median5(around + kInner, greys_around + kInner, width, options.gate, median);
       for (int x = 0; x < width; ++x) {
         disparity[x] = disparity[x] != kInvalidDisparity ? median[x] : kInvalidDisparity;
       }
     }
     if (!options.fill) continue;
-    CountValid(in, y, columns, counts);
+    CountValid(around, width, columns, counts);
     for (int x = 0; x < width; ++x) {
       if (disparity[x] != kInvalidDisparity || counts[x] < kLeastMembers) continue;
-      disparity[x] = FillValue(in, left, options.gate, x, y);
+      disparity[x] = FillValue(around, greys_around, options.gate, x);
       if (disparity[x] == kInvalidDisparity) continue;
       out->confidence.Row(y)[x] = kFilledConfidence;
       out->reason.Row(y)[x] = static_cast<uint8_t>(InvalidReason::kNone);

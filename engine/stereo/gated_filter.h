@@ -13,7 +13,6 @@ struct GatedFilterOptions {
   int gate = 20;  // grey levels, 0..255
   bool median = true;
   bool fill = true;
-  int greatest = 0xfffe;  // no stored disparity is greater; the less, the quicker
 };
 
 // Keeps its room between calls; one per thread.

@@ -42,11 +42,7 @@ void Refiner::Refine(const GreyImage& left, const SgmSettings& settings, int par
   }
   if (settings.gated_median || settings.fill_holes) {
     const GatedFilterOptions options{
-        .gate = settings.gate,
-        .median = settings.gated_median,
-        .fill = settings.fill_holes,
-        .greatest =
-            kDisparityScale * (settings.num_disparities + settings.min_disparity - map->offset_px)};
+        .gate = settings.gate, .median = settings.gated_median, .fill = settings.fill_holes};
     for_rows([&](int part, int begin, int end) {
       GatedFilterRows(*map, left, options, begin, end, &scratch_[part].gated, &other, kernels_);
     });

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "engine/stereo/pixel_cost.h"
+#include "engine/stereo/quick_division.h"
 #include "engine/stereo/sub_pixel.h"
 
 namespace vs {
@@ -22,26 +23,28 @@ uint8_t LeastOf(const uint8_t* values, int begin, int end) {
   return least;
 }
 
-int GreySpan(const GreyImage& left, int x, int y) {
-  int low = 255;
-  int high = 0;
-  for (int v = std::max(y - kTextureRadius, 0);
-       v <= std::min(y + kTextureRadius, left.height() - 1); ++v) {
+bool HasTexture(const GreyImage& left, int x, int y) {
+  uint8_t low = 255;
+  uint8_t high = 0;
+  const int begin = std::max(x - kTextureRadius, 0);
+  const int end = std::min(x + kTextureRadius + 1, left.width());
+  const int bottom = std::min(y + kTextureRadius, left.height() - 1);
+  for (int v = std::max(y - kTextureRadius, 0); v <= bottom; ++v) {
     const uint8_t* row = left.Row(v);
-    for (int u = std::max(x - kTextureRadius, 0);
-         u <= std::min(x + kTextureRadius, left.width() - 1); ++u) {
-      low = std::min<int>(low, row[u]);
-      high = std::max<int>(high, row[u]);
+    for (int u = begin; u < end; ++u) {
+      low = std::min(low, row[u]);
+      high = std::max(high, row[u]);
     }
+    if (high - low >= kLeastTexture) return true;  // mostly so after one row
   }
-  return high - low;
+  return false;
 }
 
 InvalidReason Explain(InvalidReason reason, const GreyImage& left, int x, int y) {
   const int grey = left.Row(y)[x];
   if (grey >= kSaturatedGrey) return InvalidReason::kSaturated;
   if (grey <= kDarkGrey) return InvalidReason::kDark;
-  return GreySpan(left, x, y) < kLeastTexture ? InvalidReason::kLowTexture : reason;
+  return HasTexture(left, x, y) ? reason : InvalidReason::kLowTexture;
 }
 
 // Offers the costs of one left pixel to the right pixels that they belong to.
@@ -112,7 +115,7 @@ void JudgeRow(const SgmSettings& settings, const GreyImage& left, int y, const W
     } else {
       const int difference =
           settings.left_right_check ? ViewDifference(settings, right_index, i, counterpart) : 0;
-      const int margin = second == 0 ? 0 : 255 * (second - best) / second;
+      const int margin = second == 0 ? 0 : QuickDivide(255 * (second - best), second);
       confidence = std::max<int>(margin >> std::min(difference, 8), kLeastConfidence);
       reason = Judge(settings, left, x, y, i, best, second, difference, confidence);
     }

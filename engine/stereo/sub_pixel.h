@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/stereo/quick_division.h"
 #include "engine/stereo/sgm_settings.h"
 
 namespace vs {
@@ -19,7 +20,7 @@ inline int SubPixelSixteenths(SubPixel method, int before, int best, int after) 
   if (divisor <= 0) return 0;
   // floor((2 n + divisor) / (2 divisor)), made positive for the integer division: n >= -8 divisor.
   const int numerator = 16 * (before - after) + divisor + 16 * divisor;
-  return numerator / (2 * divisor) - 8;
+  return QuickDivide(numerator, 2 * divisor) - 8;
 }
 
 }  // namespace vs
