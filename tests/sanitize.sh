@@ -13,6 +13,11 @@ export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
 export UBSAN_OPTIONS=print_stacktrace=1
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan_suppressions.txt:print_suppressions=0
 
+found=$(ctest --test-dir "build/$preset" --show-only --tests-regex "$only" |
+        sed -n 's/^Total Tests: //p')
+((found > 0)) || { echo "sanitize.sh: no test has a name that matches $only" >&2; exit 1; }
+
+# Either of the two runs of tsan may be left without a test.
 run() {
   ctest --test-dir "build/$preset" --output-on-failure --parallel "$(nproc)" --no-tests=ignore \
     --tests-regex "$only" "$@"
