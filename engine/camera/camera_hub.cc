@@ -12,7 +12,6 @@
 namespace vs {
 namespace {
 
-constexpr std::chrono::milliseconds kAskTime{150};
 constexpr std::string_view kNamedScheme = "camera";
 constexpr std::string_view kFolderScheme = "file";
 
@@ -142,12 +141,7 @@ std::vector<CameraHub::Entry> CameraHub::List() const {
 
 Result<std::vector<FoundCamera>> CameraHub::Discover(std::chrono::milliseconds timeout,
                                                      const std::stop_token& cancelled) const {
-  VS_ASSIGN_OR_RETURN(std::vector<FoundCamera> cameras, DiscoverGevCameras(timeout, "", cancelled));
-  for (FoundCamera& camera : cameras) {
-    const auto privilege = ReadGevRegister(camera.address, kGevControlPrivilege, kAskTime);
-    camera.in_use = privilege && *privilege != 0;
-  }
-  return cameras;
+  return DiscoverGevCameras(timeout, "", cancelled);
 }
 
 }  // namespace vs

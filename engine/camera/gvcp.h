@@ -21,7 +21,6 @@ struct FoundCamera {
   std::string serial;
   std::string name;     // given by the user, stored in the camera; may be empty
   std::string address;  // IP address
-  bool in_use = false;  // somebody, perhaps this server, controls it
 };
 
 // Asks all networks of this machine and collects the answers until `timeout`, or until the camera

@@ -109,8 +109,7 @@ TEST_F(GevRig, IsFoundWithBothCameras) {
   const auto cameras = hub.Discover(300ms).value();
   EXPECT_THAT(cameras, Contains(AllOf(Field(&FoundCamera::serial, "21000001"),
                                       Field(&FoundCamera::address, "127.0.0.1"),
-                                      Field(&FoundCamera::model, "Basler acA1300-30gm"),
-                                      Field(&FoundCamera::in_use, false))));
+                                      Field(&FoundCamera::model, "Basler acA1300-30gm"))));
   EXPECT_THAT(cameras, Contains(Field(&FoundCamera::address, "127.0.0.2")));
 }
 
@@ -222,10 +221,8 @@ TEST_F(GevRig, BelongsToOneClient) {
   ASSERT_TRUE(first.WaitForFrames(20)) << first.Describe();
   EXPECT_EQ(first.camera().Stats().reconnects, 0u);
   CameraHub hub;
-  EXPECT_TRUE(WaitUntil([&] {
-    const auto cameras = hub.Discover(300ms).value();
-    return cameras.size() == 1 && cameras[0].in_use;
-  }));
+  EXPECT_TRUE(WaitUntil([&] { return hub.Discover(300ms).value().size() == 1; }))
+      << "one in use is found, too";
 }
 
 TEST_F(GevRig, ListsItsFeaturesWhileItStreams) {
