@@ -33,6 +33,7 @@ constexpr milliseconds kClosedSleep{1000};
 constexpr int64_t kHousekeepingNs = 1'000'000'000;
 constexpr int64_t kStallGraceNs = 100'000'000;
 constexpr int kSmallPacketBytes = 1500;
+constexpr char kSilent[] = "the camera does not answer any more; check its power and cable";
 
 }  // namespace
 
@@ -91,8 +92,7 @@ void GevDevice::Run() {
       calls_.Refuse(status);
       SetState(opened ? CameraState::kLost : CameraState::kOpening, status.message());
     }
-    if (session_ != nullptr) EndStream(status.ok() && watchdog_.answering());
-    session_.reset();
+    Close();
     if (!streaming_wanted_) continue;
     if (status.code() == StatusCode::kFailedPrecondition) {
       const bool quiet = ++refusals_ % kQuietEvery == 0;
@@ -178,10 +178,11 @@ Status GevDevice::Serve() {
     if (wanted && session_->stream() == nullptr) {
       VS_RETURN_IF_ERROR(BeginStream());
     } else if (!wanted && session_->stream() != nullptr) {
-      EndStream(true);
+      EndStream();
       SetState(CameraState::kIdle, "");
     }
     calls_.Run(*this, kCallBudget);
+    if (session_->abandoned()) return Unavailable(kSilent);
     if (session_->control_lost()) {
       return Unavailable("the camera restarted, or another program took control of it");
     }
@@ -212,10 +213,23 @@ Status GevDevice::BeginStream() {
   return {};
 }
 
-void GevDevice::EndStream(bool answering) {
+void GevDevice::EndStream() {
   if (session_->stream() == nullptr) return;
+  AbandonIfGone();
   CountStream();
-  session_->StopStream(answering);
+  session_->StopStream();
+}
+
+void GevDevice::Close() {
+  if (session_ == nullptr) return;
+  EndStream();
+  AbandonIfGone();
+  session_.reset();
+}
+
+void GevDevice::AbandonIfGone() {
+  if (session_->abandoned()) return;
+  if (!ReadGevRegister(camera_.address, kGevControlPrivilege, kSearchTime)) session_->Abandon();
 }
 
 Status GevDevice::Receive() {
@@ -227,8 +241,11 @@ Status GevDevice::Receive() {
     if (frame != nullptr) {
       starving_ = false;
       watchdog_.Picture(now_ns, receiver_.period_ns());
-      MutexLock lock(sink_mutex_);
-      if (sink_) sink_(std::move(frame));
+      {
+        MutexLock lock(sink_mutex_);
+        if (sink_) sink_(std::move(frame));
+      }
+      SynchroniseClocks(now_ns);
     }
   } else {
     CountStream();
@@ -245,7 +262,7 @@ Status GevDevice::Watch(int64_t now_ns) {
       VS_RETURN_IF_ERROR(Ask(now_ns));
       break;
     case GevWatchdog::Action::kLostSilent:
-      return Unavailable("the camera does not answer any more; check its power and cable");
+      return Unavailable(kSilent);
     case GevWatchdog::Action::kLostIdle:
       if (receiver_.incomplete_in_a_row() > 0 && options_.packet_bytes == 0 && !small_packets_) {
         small_packets_ = true;
@@ -285,6 +302,7 @@ Status GevDevice::Ask(int64_t now_ns) {
   } else {
     watchdog_.Answered(now_ns);
     calls_.AdmitOpen();
+    SynchroniseClocks(now_ns);
   }
   return {};
 }
@@ -292,11 +310,11 @@ Status GevDevice::Ask(int64_t now_ns) {
 Result<FeatureValue> GevDevice::SetFeature(const std::string& name, const FeatureValue& value) {
   VS_ASSIGN_OR_RETURN(const FeatureInfo info, features().Info(name));
   const bool command = info.type == FeatureInfo::Type::kCommand;
-  if (!info.writable && session_->stream() != nullptr && features().Locked(name)) EndStream(true);
+  if (!info.writable && session_->stream() != nullptr && features().Locked(name)) EndStream();
   VS_ASSIGN_OR_RETURN(FeatureValue set, features().Set(name, value));
   if (!command) memory_.Remember(name, value);
   // Serve opens the stream again, with the new size of pictures.
-  if (session_->PayloadChanged()) EndStream(true);
+  if (session_->PayloadChanged()) EndStream();
   NoteSettings();
   return set;
 }
@@ -337,8 +355,6 @@ void GevDevice::KeepHouse(int64_t now_ns) {
   next_housekeeping_ns_ = now_ns + kHousekeepingNs;
   CountStream();
   CheckSocketBuffer();
-  // A camera that may be dead is not asked: the answer could take seconds.
-  if (now_ns < watchdog_.quiet_until_ns()) receiver_.SynchroniseClocks(*session_);
   const uint64_t frames = receiver_.counters().frames;
   const double elapsed_s = static_cast<double>(now_ns - last_housekeeping_ns_) * 1e-9;
   MutexLock lock(stats_mutex_);
@@ -346,6 +362,13 @@ void GevDevice::KeepHouse(int64_t now_ns) {
   stats_.frames_per_second = static_cast<double>(frames - last_frames_) / elapsed_s;
   last_frames_ = frames;
   last_housekeeping_ns_ = now_ns;
+}
+
+// Called when the camera was just heard: of one that may be gone the answer could take seconds.
+void GevDevice::SynchroniseClocks(int64_t now_ns) {
+  if (now_ns < next_synchronisation_ns_) return;
+  next_synchronisation_ns_ = now_ns + kHousekeepingNs;
+  receiver_.SynchroniseClocks(*session_);
 }
 
 void GevDevice::CheckSocketBuffer() {

@@ -35,7 +35,8 @@ class GevDevice {
   using Calls = DeviceCalls<GevDevice>;
 
   explicit GevDevice(GevCameraOptions options);
-  // Gives the camera back; takes some seconds when it is gone.
+  // Gives the camera back, or gives it up when it is gone; either takes about a second at most,
+  // unless the camera goes during a call to it.
   ~GevDevice();
   GevDevice(const GevDevice&) = delete;
   GevDevice& operator=(const GevDevice&) = delete;
@@ -65,7 +66,9 @@ class GevDevice {
   // for one call, stays ours as long as somebody holds it.
   Status Serve();
   Status BeginStream();
-  void EndStream(bool answering);
+  void EndStream();
+  void Close();
+  void AbandonIfGone();
   Status Receive();
   Status Watch(int64_t now_ns);
   Status Ask(int64_t now_ns);
@@ -73,6 +76,7 @@ class GevDevice {
   void CountPictures();
   void CountStream();
   void KeepHouse(int64_t now_ns);
+  void SynchroniseClocks(int64_t now_ns);
   void CheckSocketBuffer();
 
   void SetState(CameraState state, const std::string& problem);
@@ -106,6 +110,7 @@ class GevDevice {
   bool opened_before_ = false;
   int refusals_ = 0;  // in a row: another program had control
   std::string logged_problem_;
+  int64_t next_synchronisation_ns_ = 0;
   int64_t next_housekeeping_ns_ = 0;
   int64_t last_housekeeping_ns_ = 0;
   uint64_t last_frames_ = 0;

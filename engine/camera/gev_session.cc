@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "engine/base/clock.h"
-#include "engine/base/mutex.h"
 #include "engine/base/str.h"
 #include "engine/camera/gvcp.h"
 
@@ -34,12 +33,14 @@ void SetLocked(ArvDevice* device, bool locked) {
   arv_device_set_integer_feature_value(device, "TLParamsLocked", locked ? 1 : 0, ignored.out());
 }
 
-// One at a time: Aravis' parser of camera descriptions has global state (0.8.26 crashes when two
-// threads open their first cameras at once).
-GObjectPtr<ArvDevice> OpenDevice(GInetAddress* interface, GInetAddress* target, GlibError& error) {
-  static Mutex mutex;
-  MutexLock lock(mutex);
-  return GObjectPtr<ArvDevice>(arv_gv_device_new(interface, target, error.out()));
+std::vector<UdpSocket> SocketsAt(const std::string& local_address) {
+  std::vector<UdpSocket> sockets = UdpSocketsOfThisProcess();
+  std::erase_if(sockets, [&](const UdpSocket& one) { return one.address != local_address; });
+  return sockets;
+}
+
+bool Contains(const std::vector<UdpSocket>& sockets, const UdpSocket& one) {
+  return std::ranges::find(sockets, one) != sockets.end();
 }
 
 bool TextIs(const Result<FeatureValue>& value, std::string_view text) {
@@ -57,16 +58,30 @@ Result<std::unique_ptr<GevSession>> GevSession::Open(const std::string& address)
   const GObjectPtr<GInetAddress> interface(g_inet_address_new_from_string(local.c_str()));
   const GObjectPtr<GInetAddress> target(g_inet_address_new_from_string(address.c_str()));
   GlibError error;
-  GObjectPtr<ArvDevice> device = OpenDevice(interface.get(), target.get(), error);
+  GObjectPtr<ArvDevice> device;
+  std::vector<UdpSocket> opened;
+  {
+    // One at a time for another reason, too: Aravis' parser of camera descriptions has global state
+    // (0.8.26 crashes when two threads open their first cameras at once).
+    MutexLock lock(AravisOpensSockets());
+    const std::vector<UdpSocket> before = SocketsAt(local);
+    device = GObjectPtr<ArvDevice>(arv_gv_device_new(interface.get(), target.get(), error.out()));
+    opened = SocketsAt(local);
+    std::erase_if(opened, [&](const UdpSocket& one) { return Contains(before, one); });
+  }
   if (error || !device) return error.ToStatus().Annotated("opening");
   if (!arv_gv_device_is_controller(ARV_GV_DEVICE(device.get()))) {
     return FailedPrecondition("another program controls the camera");
   }
-  return std::unique_ptr<GevSession>(new GevSession(std::move(device), address));
+  return std::unique_ptr<GevSession>(new GevSession(std::move(device), address, std::move(opened)));
 }
 
-GevSession::GevSession(GObjectPtr<ArvDevice> device, std::string address)
-    : device_(std::move(device)), address_(std::move(address)), features_(device_.get()) {
+GevSession::GevSession(GObjectPtr<ArvDevice> device, std::string address,
+                       std::vector<UdpSocket> opened)
+    : device_(std::move(device)),
+      address_(std::move(address)),
+      opened_(std::move(opened)),
+      features_(device_.get()) {
   g_signal_connect(device_.get(), "control-lost", G_CALLBACK(OnControlLost), &control_lost_);
   GlibError ignored;
   tick_hz_ =
@@ -114,7 +129,7 @@ Status GevSession::StartStream(const GevStreamOptions& options, int packet_bytes
   SetLocked(device_.get(), true);
   arv_device_execute_command(device_.get(), "AcquisitionStart", error.out());
   if (!error) return {};
-  StopStream(true);
+  StopStream();
   return error.ToStatus().Annotated("AcquisitionStart");
 }
 
@@ -128,12 +143,18 @@ Status GevSession::SetPacketSize(int packet_bytes) {
   return error.ToStatus().Annotated(Str("packets of ", packet_bytes, " bytes"));
 }
 
-void GevSession::StopStream(bool answering) {
-  if (answering) {
-    Execute(device_.get(), "AcquisitionStop");
-    SetLocked(device_.get(), false);
-  }
+void GevSession::StopStream() {
+  Execute(device_.get(), "AcquisitionStop");
+  SetLocked(device_.get(), false);
   stream_.reset();
+}
+
+void GevSession::Abandon() {
+  abandoned_ = true;
+  const std::vector<UdpSocket> open = UdpSocketsOfThisProcess();
+  std::erase_if(opened_, [&](const UdpSocket& one) { return !Contains(open, one); });
+  // Other threads' short-lived sockets are closed by now. If not: better slow than wrong.
+  if (opened_.size() == 1) Silence(opened_.front());
 }
 
 bool GevSession::Triggered() const { return TextIs(features_.Get("TriggerMode"), "On"); }

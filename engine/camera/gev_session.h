@@ -8,12 +8,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/base/status.h"
 #include "engine/camera/camera_uri.h"
 #include "engine/camera/feature_memory.h"
 #include "engine/camera/gev_features.h"
 #include "engine/camera/gev_glib.h"
+#include "engine/camera/gev_sockets.h"
 #include "engine/camera/gev_stream.h"
 
 namespace vs {
@@ -40,8 +42,7 @@ class GevSession {
 
   // Packets of `packet_bytes`; 0 = as large as the network allows, at most 8192.
   Status StartStream(const GevStreamOptions& options, int packet_bytes);
-  // With `answering` false, the camera is not asked to stop first.
-  void StopStream(bool answering);
+  void StopStream();
   GevStream* stream() { return stream_.get(); }
   int packet_bytes() const { return packet_bytes_; }
 
@@ -57,13 +58,18 @@ class GevSession {
   // Reads both clocks; nullopt when the camera cannot latch its clock.
   std::optional<ClockSample> SampleClock();
 
+  // For a camera that is gone: from now on all calls fail within half a second, where Aravis would
+  // try for seconds, so that the session can be closed. It is good for nothing else.
+  void Abandon();
+  bool abandoned() const { return abandoned_; }
+
   // The camera was taken by another program, or restarted.
   bool control_lost() const { return control_lost_; }
 
  private:
   // The first of these features that the camera has; 0 when it has none.
   double FirstOf(std::initializer_list<const char*> names) const;
-  explicit GevSession(GObjectPtr<ArvDevice> device, std::string address);
+  GevSession(GObjectPtr<ArvDevice> device, std::string address, std::vector<UdpSocket> opened);
   Status SetPacketSize(int packet_bytes);
   // Sets what exists and can be written now.
   Status SetIfPossible(const std::string& name, const std::string& text);
@@ -71,6 +77,8 @@ class GevSession {
   std::atomic<bool> control_lost_ = false;
   GObjectPtr<ArvDevice> device_;
   const std::string address_;
+  std::vector<UdpSocket> opened_;  // with the device; its control socket is among them
+  bool abandoned_ = false;
   GevFeatures features_;
   int packet_bytes_ = 0;
   uint64_t tick_hz_ = 0;

@@ -1,18 +1,17 @@
 #include "engine/camera/gev_stream.h"
 
-#include <dirent.h>
-#include <netinet/in.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/socket.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <ctime>
 #include <utility>
+#include <vector>
 
 #include "engine/base/mutex.h"
 #include "engine/base/str.h"
+#include "engine/camera/gev_sockets.h"
 
 namespace vs {
 namespace {
@@ -65,28 +64,6 @@ std::string StatusText(ArvBufferStatus status) {
   }
 }
 
-// The file descriptor of this process' UDP socket on `port`; -1 when there is none. Aravis does not
-// tell it.
-int FindUdpSocket(uint16_t port) {
-  int found = -1;
-  DIR* directory = opendir("/proc/self/fd");
-  if (directory == nullptr) return found;
-  while (const dirent* entry = readdir(directory)) {
-    const int fd = std::atoi(entry->d_name);
-    sockaddr_in local{};
-    socklen_t length = sizeof local;
-    int type = 0;
-    socklen_t type_length = sizeof type;
-    if (getsockopt(fd, SOL_SOCKET, SO_TYPE, &type, &type_length) == 0 && type == SOCK_DGRAM &&
-        getsockname(fd, reinterpret_cast<sockaddr*>(&local), &length) == 0 &&
-        local.sin_family == AF_INET && ntohs(local.sin_port) == port) {
-      found = fd;
-    }
-  }
-  closedir(directory);
-  return found;
-}
-
 }  // namespace
 
 // Brings a buffer back to the stream when its last reader lets go, or frees it when the stream is
@@ -127,7 +104,11 @@ Result<std::unique_ptr<GevStream>> GevStream::Make(ArvDevice* device,
   }
   arv_gv_device_set_stream_options(ARV_GV_DEVICE(device),
                                    ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
-  ArvStream* stream = arv_device_create_stream(device, SafeCallback(), nullptr, error.out());
+  ArvStream* stream = nullptr;
+  {
+    MutexLock lock(AravisOpensSockets());
+    stream = arv_device_create_stream(device, SafeCallback(), nullptr, error.out());
+  }
   if (stream == nullptr) return error.ToStatus().Annotated("opening the stream");
   std::unique_ptr<GevStream> made(new GevStream(stream, payload_bytes));
   // The properties are unsigned or int as Aravis declares them.
@@ -214,10 +195,14 @@ GevStreamCounters GevStream::Counters() const {
 }
 
 int GevStream::SocketBufferBytes() const {
-  const int fd = FindUdpSocket(arv_gv_stream_get_port(ARV_GV_STREAM(stream_.get())));
+  const std::vector<UdpSocket> sockets = UdpSocketsOfThisProcess();
+  const auto own = std::ranges::find(sockets, arv_gv_stream_get_port(ARV_GV_STREAM(stream_.get())),
+                                     &UdpSocket::port);
   int bytes = 0;
   socklen_t length = sizeof bytes;
-  if (fd < 0 || getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &bytes, &length) != 0) return 0;
+  if (own == sockets.end() || getsockopt(own->fd, SOL_SOCKET, SO_RCVBUF, &bytes, &length) != 0) {
+    return 0;
+  }
   return bytes / 2;  // the kernel doubles what it grants, for its own bookkeeping
 }
 

@@ -34,7 +34,6 @@ class GevWatchdog {
   void NotAnswered(int64_t now_ns);
 
   bool stalled() const { return stalled_; }
-  bool answering() const { return answering_; }
   // Before this time a silent camera is no surprise.
   int64_t quiet_until_ns() const { return quiet_until_ns_; }
 

@@ -36,7 +36,7 @@ using ::testing::SizeIs;
 constexpr char kLeft[] = "cameras/gev:21000001";
 constexpr char kRight[] = "cameras/gev:21000002";
 
-// Stands before the server, so that it goes after it: to close cameras that are gone takes seconds.
+// Stands before the server, so that it goes after it, which gives its cameras back.
 class Cameras {
  protected:
   void StartCameras() {
