@@ -69,7 +69,9 @@ class Samples {
 
  private:
   size_t Capacity() const {
-    return static_cast<size_t>(region_.width) * static_cast<size_t>(region_.height);
+    const int step = StepOf(region_);
+    return static_cast<size_t>((region_.width + step - 1) / step) *
+           static_cast<size_t>((region_.height + step - 1) / step);
   }
 
   PixelRect region_;

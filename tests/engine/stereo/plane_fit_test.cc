@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -55,6 +56,17 @@ TEST_F(PlaneTest, NoiseIsMeasuredAndOutliersAreLeftOut) {
   EXPECT_NEAR(fit->rms_m, 0.00178, 0.0001);
   EXPECT_NEAR(fit->tilt_deg, 26.565, 0.1);
   EXPECT_NEAR(fit->used_percent, 92, 1.5);
+}
+
+TEST_F(PlaneTest, OfALargeRegionTakesMemoryForWhatIsLookedAtOnly) {
+  map_.depth_m = Image<float>(pool_, 1000, 800);
+  for (int v = 0; v < 800; ++v) std::fill_n(map_.depth_m.Row(v), 1000, 2.0F);
+  BufferPool scratch;
+  const auto fit = FitPlane(map_, {0, 0, 1000, 800}, scratch);
+  ASSERT_TRUE(fit.has_value());
+  EXPECT_EQ(fit->pixels, 200 * 160) << "every fifth row and column: 800000 / 25";
+  // Four numbers of 8 bytes for each; a slab may be up to twice what is asked for.
+  EXPECT_LE(scratch.BytesHeld(), 2 * 32'000 * 32U);
 }
 
 TEST_F(PlaneTest, NeedsPointsThatSpanAPlane) {
