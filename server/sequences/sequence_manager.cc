@@ -46,6 +46,7 @@ Status SequenceManager::Delete(const std::string& id, const std::string& etag) {
     instances_.erase(id);
   }
   changed_.Call(id);
+  parameters_changed_.Call({.sequence = id});
   return Status();
 }
 

@@ -20,7 +20,7 @@ namespace vs {
 // A change of parameters, as its watchers hear of it.
 struct ParameterEvent {
   std::string sequence;
-  std::vector<ParamAssignment> values;  // empty: look at all of them
+  std::vector<ParamAssignment> values;  // empty: look at all of them, if they are still there
   std::string etag;
   uint64_t applied_at_frame = 0;
   std::string user;
@@ -84,7 +84,7 @@ class SequenceManager {
   // Tells watchers that a sequence was edited as a whole.
   void NoteEdited(const StoredSequence& stored);
 
-  // The id of a sequence that was started or stopped.
+  // The id of a sequence that was started, stopped or deleted.
   Listeners<std::string>& changed() { return changed_; }
   Listeners<ParameterEvent>& parameters_changed() { return parameters_changed_; }
 

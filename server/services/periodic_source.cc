@@ -37,13 +37,17 @@ StreamStep PeriodicSource::Next() {
   if (ready_.empty()) {
     const bool due = now_ns >= next_report_ns_;
     if (due) next_report_ns_ = now_ns + interval_ns_;
+    bool found = options_.id.empty();
     for (const Observation& one : *things_.Get()) {
       if (!options_.id.empty() && one.id != options_.id) continue;
+      found = true;
       std::string& reported = reported_[one.id];
       if (!due && reported == one.changes) continue;
       reported = one.changes;
       ready_.push_back(one.message);
     }
+    if (!found)
+      return StreamStep::End(NotFound(Str(Quoted(options_.id), " is not there any more")));
   }
   if (ready_.empty()) {
     // Changes that nobody announces are found then.

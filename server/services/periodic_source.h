@@ -14,7 +14,8 @@
 
 namespace vs {
 
-// A stream that reports on things at a fixed interval, and at once when one changes.
+// A stream that reports on things at a fixed interval, and at once when one changes. One that
+// reports on a single thing ends with NOT_FOUND when that goes.
 class PeriodicSource final : public StreamSource {
  public:
   // Calls its argument when there may be something to see, until the returned handle goes.
@@ -22,7 +23,7 @@ class PeriodicSource final : public StreamSource {
 
   struct Options {
     uint32_t interval_ms = 0;  // as in the request: 100..60000, 0 for 1000; else INVALID_ARGUMENT
-    std::string id;            // only the thing of this id; empty for all
+    std::string id;            // only the thing of this id, which is there; empty for all
     // May be null: then changes are looked for ten times a second.
     Listen listen;
   };

@@ -202,6 +202,7 @@ Result<std::unique_ptr<StreamSource>> SequenceService::WatchSequence(
   const std::string id = request.id();
   if (!id.empty()) {
     if (const auto status = manager_.Look(id); !status) return status.error();
+    states_.Renew();  // it may be newer than the last look at all
   }
   const auto listen = [this](std::function<void()> wake) {
     return manager_.changed().Add([wake = std::move(wake)](const std::string&) { wake(); });

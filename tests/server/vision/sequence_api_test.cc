@@ -351,6 +351,48 @@ TEST_F(SequenceApi, ARunningSequenceIsNotDeleted) {
   EXPECT_EQ(0, Stored());
 }
 
+TEST_F(SequenceApi, WatchersOfADeletedSequenceAreToldSo) {
+  const auto watch_states = [this](ClientCall* call, const std::string& id) {
+    pb::WatchSequenceRequest request;
+    request.set_id(id);
+    request.set_interval_ms(60'000);
+    return sequences_->WatchSequence(call->context(), request);
+  };
+  pb::SequenceState state;
+  Create(ChainSpec("other", {}));
+  ClientCall all_call(operator_);
+  const auto all = watch_states(&all_call, "");
+  ASSERT_TRUE(all->Read(&state));
+  Create(CountSpec());  // newer than what the watcher of all was told
+  ClientCall state_call(operator_);
+  const auto states = watch_states(&state_call, "count");
+  ASSERT_TRUE(states->Read(&state));
+  EXPECT_EQ("count", state.sequence());
+  ClientCall parameters_call(operator_);
+  pb::WatchParametersRequest parameters;
+  parameters.set_sequence("count");
+  const auto changes = parameters_->WatchParameters(parameters_call.context(), parameters);
+  pb::ParameterChange change;
+  ASSERT_TRUE(changes->Read(&change));
+
+  pb::DeleteSequenceRequest request;
+  request.set_id("count");
+  pb::DeleteSequenceResponse response;
+  ASSERT_TRUE(sequences_->DeleteSequence(ClientCall(engineer_).context(), request, &response).ok());
+  EXPECT_FALSE(states->Read(&state));
+  const grpc::Status state_end = states->Finish();
+  EXPECT_EQ(grpc::StatusCode::NOT_FOUND, state_end.error_code()) << state_end.error_message();
+  EXPECT_THAT(state_end.error_message(), HasSubstr("\"count\""));
+  EXPECT_FALSE(changes->Read(&change));
+  EXPECT_EQ(grpc::StatusCode::NOT_FOUND, changes->Finish().error_code());
+
+  ASSERT_TRUE(Start("other").ok());
+  do {
+    ASSERT_TRUE(all->Read(&state)) << "who watches all goes on";
+  } while (state.state() != pb::SEQUENCE_RUN_STATE_RUNNING);
+  all_call.context()->TryCancel();
+}
+
 TEST_F(SequenceApi, BlockTypesDescribeThemselves) {
   pb::ListBlockTypesResponse list;
   ASSERT_TRUE(
