@@ -31,9 +31,9 @@ class Block {
   Block& operator=(const Block&) = delete;
 
   // What is wrong with the parameters when taken together, though each fits by itself: a limit
-  // above its counterpart. Of their values alone: asked of a block that is never started, whenever
-  // somebody proposes values, so Start() and Run() only ever see such that passed. Faults, if any,
-  // have the names of parameters as subjects.
+  // above its counterpart. Of their values and connected() alone: asked of a block that is never
+  // started, whenever somebody proposes values, so Start() and Run() only see such that passed.
+  // Faults, if any, have the names of parameters as subjects.
   virtual Status CheckParams() const { return Status(); }
   // Before the first frame, parameters set. An error keeps the sequence from starting.
   virtual Status Start() { return Status(); }

@@ -127,7 +127,8 @@ class Checker {
         Add(Str(subject, ".", name), status.message());
       }
     }
-    for (Fault& fault : CheckParamsTogether({subject, block.type, block.params})) {
+    for (Fault& fault :
+         CheckParamsTogether({subject, block.type, block.params}, spec_.connections)) {
       faults_.push_back(std::move(fault));
     }
   }
@@ -220,13 +221,18 @@ class Checker {
 
 std::vector<Fault> CheckSequence(const SequenceSpec& spec) { return Checker(spec).Check(); }
 
-std::vector<Fault> CheckParamsTogether(const BlockSpec& spec) {
+std::vector<Fault> CheckParamsTogether(const BlockSpec& spec,
+                                       const std::vector<Connection>& connections) {
   const BlockRegistry::Entry* entry = BlockRegistry::Get().Find(spec.type);
   if (entry == nullptr) return {};
   const std::unique_ptr<Block> block = entry->make();
   for (const auto& [name, value] : spec.params) {
     ParamBase* param = block->FindParam(name);
     if (param == nullptr || !param->Set(value).ok()) return {};
+  }
+  for (const Connection& one : connections) {
+    PortBase* input = one.to_block == spec.id ? block->FindInput(one.to_port) : nullptr;
+    if (input != nullptr) input->Connect(input->info().type);
   }
   const Status status = block->CheckParams();
   if (status.ok()) return {};

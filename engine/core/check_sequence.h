@@ -18,9 +18,11 @@ inline constexpr size_t kMaxConnections = 10'000;
 // inputs left open, cycles (naming the blocks on it), no source. Empty = it can be loaded.
 std::vector<Fault> CheckSequence(const SequenceSpec& spec);
 
-// Only what is wrong with the parameters of one block when taken together, see Block::CheckParams;
-// those that are not named have their initial values. None when the type is unknown or a value does
-// not fit by itself: that is another fault, and may well be the cause.
-std::vector<Fault> CheckParamsTogether(const BlockSpec& spec);
+// Only what is wrong with the parameters of one block when taken together and with its connections,
+// see Block::CheckParams; those that are not named have their initial values. `connections` are all
+// of its sequence. None when the type is unknown or a value does not fit by itself: that is another
+// fault, and may well be the cause.
+std::vector<Fault> CheckParamsTogether(const BlockSpec& spec,
+                                       const std::vector<Connection>& connections);
 
 }  // namespace vs

@@ -65,7 +65,7 @@ Status LiveParameters::Check(const std::vector<ParamAssignment>& batch) const {
     }
   }
   for (const auto& [node, block] : changed) {
-    for (Fault& fault : CheckParamsTogether(block)) {
+    for (Fault& fault : CheckParamsTogether(block, sequence_.spec().connections)) {
       refuse(std::move(fault.subject), std::move(fault.message));
     }
   }

@@ -41,7 +41,7 @@ class PortBase {
 
   const PortInfo& info() const { return info_; }
   // Of an input: the type of the output that feeds it; empty when it is not connected. Set while
-  // the sequence is loaded, so Start() can rely on it.
+  // the sequence is loaded, so Start() can rely on it; CheckParams() only on connected().
   std::string_view source_type() const { return source_type_; }
   bool connected() const { return !source_type_.empty(); }
   void Connect(std::string_view source_type) { source_type_ = source_type; }

@@ -95,23 +95,24 @@ Result<ParameterSet> SequenceManager::Parameters(const std::string& id) {
 
 Result<ParameterAnswer> SequenceManager::SetParameters(const std::string& id,
                                                        const ParameterRequest& request) {
-  return ChangeParameters(id, request, [&](const auto& parameters, const ChangeRules& rules) {
-    return CheckAssignments(parameters, request.values, rules);
-  });
+  return ChangeParameters(
+      id, request, [&](const auto& parameters, const auto& connections, const ChangeRules& rules) {
+        return CheckAssignments(parameters, connections, request.values, rules);
+      });
 }
 
 Result<ParameterAnswer> SequenceManager::ResetParameters(const std::string& id,
                                                          const std::vector<std::string>& paths,
                                                          const ParameterRequest& request) {
-  return ChangeParameters(id, request, [&](const auto& parameters, const ChangeRules& rules) {
-    return InitialValues(parameters, paths, rules);
-  });
+  return ChangeParameters(
+      id, request, [&](const auto& parameters, const auto& connections, const ChangeRules& rules) {
+        return InitialValues(parameters, connections, paths, rules);
+      });
 }
 
-Result<ParameterAnswer> SequenceManager::ChangeParameters(
-    const std::string& id, const ParameterRequest& request,
-    const std::function<Result<std::vector<ParamAssignment>>(const std::vector<BlockParameter>&,
-                                                             const ChangeRules&)>& decide) {
+Result<ParameterAnswer> SequenceManager::ChangeParameters(const std::string& id,
+                                                          const ParameterRequest& request,
+                                                          const Decide& decide) {
   MutexLock editing(editing_);
   VS_ASSIGN_OR_RETURN(const SequenceStatus status, Look(id));
   if (status.activity == Activity::kStarting) {
@@ -121,8 +122,10 @@ Result<ParameterAnswer> SequenceManager::ChangeParameters(
   ParameterAnswer answer;
   const auto change = [&](StoredSequence* stored) -> Status {
     const auto parameters = run != nullptr ? ParametersOf(run) : ParametersOf(stored->spec);
-    VS_ASSIGN_OR_RETURN(answer.values, decide(parameters, {.operators_only = request.operators_only,
-                                                           .running = run != nullptr}));
+    const SequenceSpec& spec = run != nullptr ? run->sequence().spec() : stored->spec;
+    VS_ASSIGN_OR_RETURN(answer.values, decide(parameters, spec.connections,
+                                              {.operators_only = request.operators_only,
+                                               .running = run != nullptr}));
     Store(answer.values, parameters, &stored->spec);
     return Status();
   };

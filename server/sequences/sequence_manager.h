@@ -92,11 +92,10 @@ class SequenceManager {
   // NOT_FOUND when there is no such sequence, UNAVAILABLE while the server shuts down.
   Result<std::shared_ptr<SequenceInstance>> Instance(const std::string& id) VS_EXCLUDES(mutex_);
   std::vector<std::shared_ptr<SequenceInstance>> Instances() VS_EXCLUDES(mutex_);
-  Result<ParameterAnswer> ChangeParameters(
-      const std::string& id, const ParameterRequest& request,
-      const std::function<Result<std::vector<ParamAssignment>>(const std::vector<BlockParameter>&,
-                                                               const ChangeRules&)>& decide)
-      VS_EXCLUDES(editing_);
+  using Decide = std::function<Result<std::vector<ParamAssignment>>(
+      const std::vector<BlockParameter>&, const std::vector<Connection>&, const ChangeRules&)>;
+  Result<ParameterAnswer> ChangeParameters(const std::string& id, const ParameterRequest& request,
+                                           const Decide& decide) VS_EXCLUDES(editing_);
 
   SequenceStore& store_;
   Scheduler& scheduler_;

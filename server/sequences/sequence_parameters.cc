@@ -112,8 +112,8 @@ std::vector<BlockParameter> ParametersOf(const std::shared_ptr<const Run>& run) 
 }
 
 Result<std::vector<ParamAssignment>> CheckAssignments(
-    const std::vector<BlockParameter>& parameters, const std::vector<ParamAssignment>& assignments,
-    const ChangeRules& rules) {
+    const std::vector<BlockParameter>& parameters, const std::vector<Connection>& connections,
+    const std::vector<ParamAssignment>& assignments, const ChangeRules& rules) {
   std::vector<ParamAssignment> checked;
   std::set<std::pair<std::string, std::string>> seen;
   std::map<std::string, BlockSpec> changed;  // as they would be, with what does not fit too
@@ -141,7 +141,7 @@ Result<std::vector<ParamAssignment>> CheckAssignments(
     }
   }
   for (const auto& [id, block] : changed) {
-    for (Fault& fault : CheckParamsTogether(block)) {
+    for (Fault& fault : CheckParamsTogether(block, connections)) {
       faults.Add(StatusCode::kInvalidArgument, std::move(fault.subject), std::move(fault.message));
     }
   }
@@ -150,6 +150,7 @@ Result<std::vector<ParamAssignment>> CheckAssignments(
 }
 
 Result<std::vector<ParamAssignment>> InitialValues(const std::vector<BlockParameter>& parameters,
+                                                   const std::vector<Connection>& connections,
                                                    const std::vector<std::string>& paths,
                                                    const ChangeRules& rules) {
   std::vector<ParamAssignment> initial;
@@ -166,7 +167,7 @@ Result<std::vector<ParamAssignment>> InitialValues(const std::vector<BlockParame
     if (parameter != nullptr) assignment.value = parameter->info().initial;
     initial.push_back(std::move(assignment));
   }
-  return CheckAssignments(parameters, initial, rules);
+  return CheckAssignments(parameters, connections, initial, rules);
 }
 
 void Store(const std::vector<ParamAssignment>& checked,

@@ -36,15 +36,16 @@ struct ChangeRules {
 
 // The assignments with their values in the parameters' own types (an integer for a number becomes
 // that number), or all that is wrong with them at once: INVALID_ARGUMENT for unknown names, wrong
-// types and ranges, values that do not go together and a parameter named twice; else
-// PERMISSION_DENIED or FAILED_PRECONDITION.
+// types and ranges, values that do not go together or with the `connections` of the sequence, and a
+// parameter named twice; else PERMISSION_DENIED or FAILED_PRECONDITION.
 Result<std::vector<ParamAssignment>> CheckAssignments(
-    const std::vector<BlockParameter>& parameters, const std::vector<ParamAssignment>& assignments,
-    const ChangeRules& rules);
+    const std::vector<BlockParameter>& parameters, const std::vector<Connection>& connections,
+    const std::vector<ParamAssignment>& assignments, const ChangeRules& rules);
 
 // The initial values of the parameters `paths` ("block.parameter"; empty for all of them, but
 // without those that the rules forbid).
 Result<std::vector<ParamAssignment>> InitialValues(const std::vector<BlockParameter>& parameters,
+                                                   const std::vector<Connection>& connections,
                                                    const std::vector<std::string>& paths,
                                                    const ChangeRules& rules);
 

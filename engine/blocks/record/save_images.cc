@@ -128,9 +128,14 @@ class SaveImages final : public Block {
                                 .doc = "What to do at a limit: stop saving, which shows as an "
                                        "error of this block, or delete the oldest pictures."}};
 
+  Status CheckParams() const override {
+    if (*policy != "fail" || pass.connected()) return Status();
+    return Status(StatusCode::kInvalidArgument, "the policy needs an input",
+                  {{"policy", "fail needs the input pass: connect it, or choose another policy"}});
+  }
+
   Status Start() override {
     if (!CanSave(picture.source_type())) return WrongType(picture.source_type());
-    VS_RETURN_IF_ERROR(CheckPolicy());
     VS_ASSIGN_OR_RETURN(const std::filesystem::path place,
                         DataPath(environment().folders, *folder));
     VS_ASSIGN_OR_RETURN(folder_, PictureFolder::Open(place));
@@ -140,7 +145,6 @@ class SaveImages final : public Block {
   }
 
   Status Run() override {
-    VS_RETURN_IF_ERROR(CheckPolicy());
     ++runs_;
     if (*policy == "every_nth" && (runs_ - 1) % *every_nth != 0) return Status();
     // A part of which nothing is known is as interesting as a bad one.
@@ -151,11 +155,6 @@ class SaveImages final : public Block {
   void Stop() override { folder_.reset(); }
 
  private:
-  Status CheckPolicy() const {
-    if (*policy != "fail" || pass.connected()) return Status();
-    return FailedPrecondition("the policy fail needs the input pass: connect it");
-  }
-
   static bool CanSave(std::string_view type) {
     return type == "frame" || type == "stereo_frame" || type == "grey_image" ||
            type == "color_image" || type == "disparity_map" || type == "depth_map" || type == "any";

@@ -304,6 +304,49 @@ TEST_F(SequenceApi, ValuesThatDoNotGoTogetherAreRefusedAtTheDoor) {
       parameters_->ResetParameters(ClientCall(operator_).context(), reset, &unused).error_code());
 }
 
+TEST_F(SequenceApi, AChoiceThatNeedsAnOpenInputIsRefusedAtTheDoor) {
+  SequenceSpec spec;
+  spec.id = "saving";
+  spec.blocks = {{"source", "SimulatedStereo", {{"rate_hz", 10.0}}},
+                 {"small", "Resize", {{"scale", 0.2}}},
+                 {"save", "SaveImages", {{"policy", std::string("fail")}}}};
+  spec.connections = {{"source", "pair", "small", "pair"}, {"small", "resized", "save", "picture"}};
+  const grpc::Status refused = TryCreate(spec);
+  EXPECT_THAT(refused.error_message(), HasSubstr("fail needs the input pass: connect it"));
+  EXPECT_THAT(SubjectsOf(refused), UnorderedElementsAre("save.policy"));
+  EXPECT_EQ(0, Stored());
+  pb::ValidateSequenceRequest validate;
+  *validate.mutable_spec() = ToProto(spec);
+  pb::ValidateSequenceResponse validated;
+  ASSERT_TRUE(
+      sequences_->ValidateSequence(ClientCall(engineer_).context(), validate, &validated).ok());
+  ASSERT_EQ(1, validated.faults_size());
+  EXPECT_EQ("save.policy", validated.faults(0).subject());
+
+  spec.blocks[2].params = {{"policy", std::string("every_nth")}, {"every_nth", int64_t{1'000'000}}};
+  Create(spec);
+  pb::Value fail;
+  fail.set_string_value("fail");
+  pb::SetParametersResponse answer;
+  for (const bool running : {false, true}) {
+    if (running) {
+      ASSERT_TRUE(Start("saving").ok());
+    }
+    const grpc::Status set = Set(operator_, "saving", "save.policy", fail, &answer);
+    EXPECT_EQ(grpc::StatusCode::INVALID_ARGUMENT, set.error_code());
+    EXPECT_THAT(SubjectsOf(set), UnorderedElementsAre("save.policy"));
+    pb::GetParametersRequest get;
+    get.set_sequence("saving");
+    get.add_paths("save.policy");
+    pb::GetParametersResponse got;
+    ASSERT_TRUE(parameters_->GetParameters(ClientCall(operator_).context(), get, &got).ok());
+    EXPECT_EQ("every_nth", got.values(0).value().string_value());
+  }
+  EXPECT_EQ(1u, State("saving").revision());
+  ASSERT_TRUE(Stop("saving").ok());
+  EXPECT_TRUE(Start("saving").ok());
+}
+
 TEST_F(SequenceApi, WatchersSeeParametersAndStatesChange) {
   Create(CountSpec());
   ClientCall parameters_call(operator_);
