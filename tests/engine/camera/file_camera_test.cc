@@ -4,6 +4,7 @@
 #include <thread>
 #include <vector>
 
+#include "engine/base/clock.h"
 #include "engine/base/mailbox.h"
 #include "engine/camera/camera_source.h"
 #include "tests/engine/camera/picture_files.h"
@@ -68,6 +69,18 @@ TEST(FileCamera, TakesOnlyWhatMatchesThePattern) {
   WriteGrey(folder / "b_left.pgm", 3);
   const auto camera = Open("file:" + folder.path().string() + "?pattern=*_left.pgm");
   EXPECT_THAT(GreyValues(PlayAll(*camera)), ElementsAre(1, 3));
+}
+
+TEST(FileCamera, IsNoFasterThanTheGivenRate) {
+  TempFolder folder;
+  for (const char* name : {"1.pgm", "2.pgm", "3.pgm", "4.pgm", "5.pgm"}) {
+    WriteGrey(folder / name, 1);
+  }
+  const auto camera = Open("file:" + folder.path().string() + "?fps=100");
+  const int64_t begin_ns = SystemClock().MonotonicNs();
+  const auto frames = PlayAll(*camera);
+  ASSERT_EQ(frames.size(), 5u);
+  for (int i = 0; i < 5; ++i) EXPECT_GE(frames[i]->capture_ns - begin_ns, i * 10'000'000) << i;
 }
 
 TEST(FileCamera, LoopsUntilItIsStopped) {

@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "engine/base/clock.h"
 #include "engine/base/mailbox.h"
 #include "tests/engine/camera/picture_files.h"
 #include "tests/support/temp_folder.h"
@@ -64,6 +65,19 @@ TEST(FilePairSource, FindsPairsByTheWordsLeftAndRight) {
   EXPECT_FALSE(pairs[0]->geometry.has_value());
   EXPECT_EQ(pairs[0]->truth, nullptr);
   EXPECT_EQ(source->Stats().pairing.pairs, 3u);
+}
+
+TEST(FilePairSource, IsNoFasterThanTheGivenRate) {
+  TempFolder folder;
+  for (const int i : {0, 1, 2, 3, 4}) {
+    WriteGrey(folder / ("left" + std::to_string(i) + ".png"), 1);
+    WriteGrey(folder / ("right" + std::to_string(i) + ".png"), 1);
+  }
+  const auto source = MakeFilePairSource({.folder = folder.path(), .play = {.fps = 100}});
+  const int64_t begin_ns = SystemClock().MonotonicNs();
+  const auto pairs = PlayAll(*source);
+  ASSERT_EQ(pairs.size(), 5u);
+  for (int i = 0; i < 5; ++i) EXPECT_GE(pairs[i]->left->capture_ns - begin_ns, i * 10'000'000) << i;
 }
 
 TEST(FilePairSource, FindsPairsByPatternsAlsoInSubfolders) {

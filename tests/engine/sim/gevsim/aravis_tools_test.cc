@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "tests/support/child_process.h"
 #include "tests/support/gevsim.h"
 
@@ -84,9 +86,9 @@ TEST_F(AravisTools, StreamWithoutAFailure) {
       command.emplace_back("--trigger=Software");
     }
     const std::string report = Run(command);
-    EXPECT_THAT(report, HasSubstr("image width            = 648"));
-    EXPECT_THAT(report, HasSubstr("n_failures             = 0"));
-    EXPECT_THAT(report, testing::Not(HasSubstr("n_completed_buffers    = 0"))) << report;
+    EXPECT_TRUE(std::regex_search(report, std::regex("image width *= *648\n"))) << report;
+    EXPECT_TRUE(std::regex_search(report, std::regex("n_failures *= *0\n"))) << report;
+    EXPECT_TRUE(std::regex_search(report, std::regex("n_completed_buffers *= *[1-9]"))) << report;
   }
 }
 
