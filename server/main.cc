@@ -23,7 +23,7 @@ namespace vs {
 namespace {
 
 constexpr int kExitFailure = 1;
-constexpr int kExitBadConfig = 2;
+constexpr int kExitBadConfig = 2;  // or a command line that makes no sense
 constexpr unsigned int kEndS = 10;
 
 // A frame is larger than what malloc takes from its heap at first: each one would be mapped and
@@ -128,7 +128,14 @@ int RunProgram(int argument_count, char** arguments) {
                  "Print the rate of each running sequence every so many seconds")
       ->check(CLI::Range(1, 3600));
   app.set_version_flag("--version", kVersion);
-  CLI11_PARSE(app, argument_count, arguments);
+  try {
+    app.parse(argument_count, arguments);
+  } catch (const CLI::Success& answered) {  // help or version
+    return app.exit(answered);
+  } catch (const CLI::ParseError& error) {
+    return Fail(InvalidArgument(Str(error.what(), " (visionserver --help says more)")),
+                kExitBadConfig);
+  }
 
   const Result<config::ServerConfig> config = LoadConfig(config_file);
   if (!config) return Fail(config.error(), kExitBadConfig);

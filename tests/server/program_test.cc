@@ -35,6 +35,7 @@ using test::RawSocket;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 constexpr const char* kInfo = "/visionserver.v1.SystemService/GetServerInfo";
 
@@ -112,7 +113,18 @@ TEST_F(ProgramTest, SaysThatThereIsNoConfiguration) {
   EXPECT_THAT(RunToEnd().error_output, HasSubstr("No such file"));
   Write("");
   EXPECT_EQ(RunToEnd().exit_code, 2);
-  EXPECT_NE(test::RunProcess({VS_SERVER_PROGRAM})->exit_code, 0);
+}
+
+TEST_F(ProgramTest, RefusesACommandLineThatMakesNoSense) {
+  const FinishedProcess nothing = *test::RunProcess({VS_SERVER_PROGRAM});
+  EXPECT_EQ(nothing.exit_code, 2);
+  EXPECT_THAT(nothing.error_output, StartsWith("visionserver: "));
+  EXPECT_THAT(nothing.error_output, HasSubstr("--config"));
+  const FinishedProcess unknown = RunToEnd({"--dance"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.error_output, HasSubstr("--dance"));
+  EXPECT_EQ(test::RunProcess({VS_SERVER_PROGRAM, "--help"})->exit_code, 0);
+  EXPECT_EQ(test::RunProcess({VS_SERVER_PROGRAM, "--version"})->exit_code, 0);
 }
 
 TEST_F(ProgramTest, ChecksAConfigurationWithoutStarting) {

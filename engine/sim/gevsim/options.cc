@@ -1,9 +1,13 @@
 #include "engine/sim/gevsim/options.h"
 
+#include <cstdio>
+
 #include <CLI/CLI.hpp>
 
 namespace vs::sim {
 namespace {
+
+constexpr int kExitUsage = 2;
 
 DeviceClock ClockOf(int64_t tick_hz, double offset_ms, double drift_ppm) {
   return {.tick_hz = tick_hz,
@@ -77,8 +81,11 @@ ParsedOptions ParseOptions(int argc, char** argv) {
       ->check(CLI::Range(0.0, 1e9));
   try {
     app.parse(argc, argv);
+  } catch (const CLI::Success& answered) {
+    parsed.exit_code = app.exit(answered);
   } catch (const CLI::ParseError& error) {
-    parsed.exit_code = app.exit(error);
+    std::fprintf(stderr, "gevsim: %s (gevsim --help says more)\n", error.what());
+    parsed.exit_code = kExitUsage;
   }
   return parsed;
 }

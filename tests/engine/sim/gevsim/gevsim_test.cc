@@ -401,5 +401,13 @@ TEST(GevSimScene, ItsFramesAreTheLibrarysPicturesOfTheirTimestamps) {
   }
 }
 
+TEST(GevSimUsage, RefusesACommandLineThatMakesNoSense) {
+  const auto done = test::RunProcess({VS_GEVSIM, "--dance"});
+  ASSERT_TRUE(done.has_value()) << done.error().ToString();
+  EXPECT_EQ(done->exit_code, 2);
+  EXPECT_TRUE(done->error_output.starts_with("gevsim: ")) << done->error_output;
+  EXPECT_NE(done->error_output.find("--dance"), std::string::npos) << done->error_output;
+}
+
 }  // namespace
 }  // namespace vs::sim
