@@ -23,7 +23,12 @@ int Fail(const vs::client::Error& error) {
 
 int main(int argument_count, char** arguments) {
   const char* key = std::getenv("VISIONSERVER_TOKEN");
-  if (argument_count != 5 || key == nullptr) return 2;
+  if (argument_count != 5 || key == nullptr) {
+    std::fputs(
+        "usage: VISIONSERVER_TOKEN=API_KEY robot_guidance SERVER FINGERPRINT SEQUENCE STREAM\n",
+        stderr);
+    return 2;
+  }
   const std::string sequence = arguments[3];
 
   // Connect once; the connection comes back by itself when the server or the cable does.

@@ -37,5 +37,12 @@ TEST_F(RobotGuidance, SaysWhatIsWrong) {
   EXPECT_EQ(5, Run(server_->fingerprint(), key).exit_code);  // no such sequence
 }
 
+TEST(RobotGuidanceUsage, IsShownWhenSomethingIsMissing) {
+  const auto done = RunProcess({VS_ROBOT_GUIDANCE, "localhost"});
+  ASSERT_TRUE(done) << done.error().ToString();
+  EXPECT_EQ(2, done->exit_code);
+  EXPECT_THAT(done->error_output, HasSubstr("robot_guidance SERVER FINGERPRINT SEQUENCE STREAM\n"));
+}
+
 }  // namespace
 }  // namespace vs::test
