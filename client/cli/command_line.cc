@@ -1,7 +1,10 @@
 #include "client/cli/command_line.h"
 
+#include <algorithm>
 #include <iostream>
 #include <map>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -38,11 +41,45 @@ constexpr char kFooter[] =
 constexpr char kCommonFooter[] =
     "Common options (--server, --ca, --fingerprint, --json ...) and exit codes: visionctl --help";
 
-// A number within a range, whose help says no more than `name` and its initial value.
+// A number within a range, whose help says no more than `name`.
 template <class T>
-void Describe(CLI::Option* option, const std::string& name, T initial, T min, T max) {
-  CLI::Validator range = CLI::Range(min, max);
-  option->type_name(name)->default_val(initial)->check(range.description(""));
+CLI::Option* Limit(CLI::Option* option, const std::string& name, T min, T max) {
+  return option->type_name(name)->check([=](const std::string& text) {
+    T number{};
+    if (!CLI::detail::lexical_cast(text, number)) {
+      return "\"" + text + "\" is no " + (std::is_integral_v<T> ? "whole number" : "number");
+    }
+    if (number >= min && number <= max) return std::string();
+    return text + " is not between " + CLI::detail::to_string(min) + " and " +
+           CLI::detail::to_string(max);
+  });
+}
+
+// The error of a command line that makes no sense. CLI11 itself says of a word that is no command
+// only that it misses one.
+client::Error UsageError(const CLI::App& app, const CLI::ParseError& error) {
+  std::string message = error.what();
+  std::string path = "visionctl";
+  const CLI::App* deepest = &app;
+  while (!deepest->get_subcommands().empty()) {
+    deepest = deepest->get_subcommands().front();
+    path += " " + deepest->get_name();
+  }
+  const std::vector<std::string> unknown = app.remaining(/*recurse=*/true);
+  if (deepest->get_require_subcommand_min() > 0 && !unknown.empty()) {
+    const std::string kind = unknown.front().starts_with('-') ? "option" : "command";
+    message = path + " has no " + kind + " \"" + unknown.front() + "\"";
+  }
+  return {.code = client::Code::kInvalidArgument,
+          .message = message + " (" + path + " --help says more)",
+          .reason = "USAGE",
+          .faults = {}};
+}
+
+// Whether it was asked for, on a command line that cannot be understood as a whole.
+bool AsksForJson(int argument_count, const char* const* arguments) {
+  return std::find(arguments, arguments + argument_count, std::string_view("--json")) !=
+         arguments + argument_count;
 }
 
 class CommandImpl final : public Command {
@@ -52,6 +89,12 @@ class CommandImpl final : public Command {
   Argument<std::string> Positional(const std::string& name, const std::string& doc) override {
     auto value = std::make_shared<std::string>();
     app_->add_option(name, *value, doc)->required()->type_name("");
+    return value;
+  }
+  Argument<std::string> OptionalPositional(const std::string& name,
+                                           const std::string& doc) override {
+    auto value = std::make_shared<std::string>();
+    app_->add_option(name, *value, doc)->type_name("");
     return value;
   }
   Argument<std::vector<std::string>> Positionals(const std::string& name, const std::string& doc,
@@ -69,13 +112,19 @@ class CommandImpl final : public Command {
   Argument<int64_t> Count(const std::string& flag, const std::string& doc, int64_t initial,
                           int64_t min, int64_t max) override {
     auto value = std::make_shared<int64_t>(initial);
-    Describe(app_->add_option(flag, *value, doc), "N", initial, min, max);
+    Limit(app_->add_option(flag, *value, doc), "N", min, max)->default_val(initial);
+    return value;
+  }
+  Argument<std::optional<int64_t>> OptionalCount(const std::string& flag, const std::string& doc,
+                                                 int64_t min, int64_t max) override {
+    auto value = std::make_shared<std::optional<int64_t>>();
+    Limit(app_->add_option(flag, *value, doc), "N", min, max);
     return value;
   }
   Argument<double> Number(const std::string& flag, const std::string& doc, double initial,
                           double min, double max) override {
     auto value = std::make_shared<double>(initial);
-    Describe(app_->add_option(flag, *value, doc), "NUMBER", initial, min, max);
+    Limit(app_->add_option(flag, *value, doc), "NUMBER", min, max)->default_val(initial);
     return value;
   }
   Argument<bool> Flag(const std::string& flag, const std::string& doc) override {
@@ -172,9 +221,9 @@ CommandLine::CommandLine() : impl_(std::make_unique<Impl>()) {
                "Without TLS; only to a server on this machine that was started so");
   app.add_flag("--json", options.json,
                "Print the answer as JSON (64-bit numbers as text, as protobuf does)");
-  Describe(
-      app.add_option("--timeout", options.timeout_s, "How long to wait for an answer, seconds"),
-      "S", options.timeout_s, 0.1, 3600.0);
+  Limit(app.add_option("--timeout", options.timeout_s, "How long to wait for an answer, seconds"),
+        "S", 0.1, 3600.0)
+      ->default_val(options.timeout_s);
 }
 
 CommandLine::~CommandLine() = default;
@@ -204,7 +253,7 @@ int CommandLine::Main(int argument_count, const char* const* arguments) {
   } catch (const CLI::CallForHelp& help) {
     return impl_->app.exit(help);
   } catch (const CLI::ParseError& error) {
-    std::cerr << "visionctl: " << error.what() << " (visionctl --help says more)\n";
+    PrintError(UsageError(impl_->app, error), AsksForJson(argument_count, arguments));
     return kExitUsage;
   }
   for (const std::unique_ptr<CommandImpl>& command : impl_->commands) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,9 @@ class Command {
 
   // In their order on the command line.
   virtual Argument<std::string> Positional(const std::string& name, const std::string& doc) = 0;
+  // Empty when it is not given.
+  virtual Argument<std::string> OptionalPositional(const std::string& name,
+                                                   const std::string& doc) = 0;
   // One or more; with `optional` none will do.
   virtual Argument<std::vector<std::string>> Positionals(const std::string& name,
                                                          const std::string& doc,
@@ -47,6 +51,10 @@ class Command {
                                      const std::string& doc, const std::string& initial = "") = 0;
   virtual Argument<int64_t> Count(const std::string& flag, const std::string& doc, int64_t initial,
                                   int64_t min, int64_t max) = 0;
+  // Nothing when it is not given.
+  virtual Argument<std::optional<int64_t>> OptionalCount(const std::string& flag,
+                                                         const std::string& doc, int64_t min,
+                                                         int64_t max) = 0;
   virtual Argument<double> Number(const std::string& flag, const std::string& doc, double initial,
                                   double min, double max) = 0;
   virtual Argument<bool> Flag(const std::string& flag, const std::string& doc) = 0;

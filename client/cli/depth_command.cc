@@ -13,7 +13,7 @@ constexpr int64_t kSecondNs = 1'000'000'000;
 
 struct DepthArguments {
   Argument<std::string> sequence;
-  Argument<int64_t> frames;
+  Argument<std::optional<int64_t>> frames;
   Argument<double> duration_s;
   Argument<std::string> out;
   Argument<std::string> stream;
@@ -38,13 +38,21 @@ v1::Codec ToCodec(const std::string& word) {
 // depth.
 Result<std::string> FindStream(client::Client& client, const std::string& sequence,
                                const std::string& name) {
-  if (!name.empty()) return sequence + "/" + name;
   VS_CLI_TRY(const v1::ListStreamsResponse response, client.ListStreams());
   std::string depth;
+  std::string all;
   for (const v1::StreamInfo& stream : response.streams()) {
     if (!stream.stream().starts_with(sequence + "/")) continue;
-    if (stream.kind() == v1::STREAM_KIND_DISPARITY) return stream.stream();
+    const std::string own_name = stream.stream().substr(sequence.size() + 1);
+    all += (all.empty() ? "" : ", ") + own_name;
+    if (name.empty() ? stream.kind() == v1::STREAM_KIND_DISPARITY : own_name == name) {
+      return stream.stream();
+    }
     if (stream.kind() == v1::STREAM_KIND_DEPTH && depth.empty()) depth = stream.stream();
+  }
+  if (!name.empty() && !all.empty()) {
+    return client::Failure(client::Code::kNotFound,
+                           sequence + " has no stream \"" + name + "\"; there are " + all);
   }
   if (!depth.empty()) return depth;
   // Tells a sequence that is not there from one that only publishes nothing.
@@ -94,11 +102,11 @@ class Report {
   int64_t lately_from_ns_ = 0;
 };
 
-// The next frame, looking for Ctrl-C meanwhile; nothing when that came.
+// The next frame; nothing when Ctrl-C or `end_ns` comes first.
 Result<std::optional<client::DepthFrame>> Next(client::DepthStream& depth, const Session& session,
-                                               const Interrupt& interrupt) {
+                                               const Interrupt& interrupt, int64_t end_ns) {
   const auto deadline = std::chrono::steady_clock::now() + session.timeout();
-  while (!interrupt.requested()) {
+  while (!interrupt.requested() && NowNs() < end_ns) {
     Result<client::DepthFrame> frame = depth.Next(Interrupt::kGlance);
     if (frame) return std::optional(std::move(*frame));
     if (frame.error().code != client::Code::kDeadlineExceeded) return tl::unexpected(frame.error());
@@ -137,9 +145,14 @@ Result<void> Depth(Session& session, const DepthArguments& arguments) {
       *arguments.duration_s == 0
           ? INT64_MAX
           : NowNs() + static_cast<int64_t>(*arguments.duration_s * static_cast<double>(kSecondNs));
-  for (int64_t count = 1; *arguments.frames == 0 || count <= *arguments.frames; ++count) {
-    if (NowNs() >= end_ns) break;
-    VS_CLI_TRY(const std::optional<client::DepthFrame> frame, Next(depth, session, interrupt));
+  const int64_t frames = arguments.frames->value_or(*arguments.duration_s == 0 ? 1 : 0);
+  for (int64_t count = 1; frames == 0 || count <= frames; ++count) {
+    VS_CLI_TRY(const std::optional<client::DepthFrame> frame,
+               Next(depth, session, interrupt, end_ns));
+    if (!frame && !interrupt.requested() && count == 1) {
+      return client::Failure(client::Code::kDeadlineExceeded,
+                             "no depth came within " + NumberText(*arguments.duration_s, 1) + " s");
+    }
     if (!frame) break;
     std::optional<double> latency_ms;
     if (clock && frame->capture_ns != 0) {
@@ -162,7 +175,9 @@ void AddDepthCommand(CommandLine& line) {
   Command& depth = line.Add("depth", "Receive depth from a running sequence: store it, measure it");
   const DepthArguments arguments = {
       .sequence = depth.Positional("SEQUENCE", "Its id, see sequences list"),
-      .frames = depth.Count("--frames", "How many; 0: until Ctrl-C", 1, 0, 1'000'000'000),
+      .frames = depth.OptionalCount(
+          "--frames", "How many; 0: until Ctrl-C (otherwise 1, or with --duration all)", 0,
+          1'000'000'000),
       .duration_s = depth.Number("--duration", "End after so many seconds; 0: do not", 0, 0, 1e9),
       .out =
           depth.Text("--out", "DIR",

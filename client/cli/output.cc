@@ -113,6 +113,9 @@ void PrintError(const client::Error& error, bool json) {
     return;
   }
   std::cerr << "visionctl: " << Printable(error.message) << "\n";
+  const bool says_all = error.faults.size() == 1 &&
+                        error.message.find(error.faults.front().message) != std::string::npos;
+  if (says_all) return;
   for (const client::Fault& fault : error.faults) {
     std::cerr << "  " << Printable(fault.subject + ": " + fault.message) << "\n";
   }

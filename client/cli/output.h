@@ -41,7 +41,7 @@ void PrintJson(const google::protobuf::Message& message, bool indented = true);
 // Several messages as one JSON object.
 void PrintJsonObject(
     const std::vector<std::pair<std::string, const google::protobuf::Message*>>& members);
-// One line to standard error, and one for each fault; or one line of JSON.
+// One line to standard error, and one for each fault that it does not tell; or one line of JSON.
 void PrintError(const client::Error& error, bool json);
 
 // "2026-01-31 14:03:59.123" in local time; "-" for none.

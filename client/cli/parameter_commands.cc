@@ -93,8 +93,8 @@ void AddParameterCommands(CommandLine& line) {
   Command& set = line.Add("set", "Set parameters of a sequence, all at once between two frames");
   const auto set_sequence = set.Positional("SEQUENCE", "Its id, see sequences list");
   const auto pairs = set.Positionals("BLOCK.PARAM VALUE", "Parameters, each with its value");
-  set.Example("visionctl set stereo_depth match.p2 96")
-      .Example("visionctl set stereo_depth match.p1 8 match.p2 96");
+  set.Example("visionctl set stereo_depth match.p2 40")
+      .Example("visionctl set stereo_depth match.p1 8 match.p2 40");
   set.Run([=](Session& session) { return Set(session, *set_sequence, *pairs); });
 }
 

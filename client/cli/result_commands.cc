@@ -71,6 +71,12 @@ Result<void> Tail(Session& session, const FilterArguments& arguments, int64_t li
                   int64_t after) {
   VS_CLI_TRY(const v1::ResultFilter filter, ToFilter(arguments));
   VS_CLI_TRY(client::Client * client, session.Connect());
+  if (!arguments.sequence->empty()) {
+    // One that is not there would be waited for without end.
+    if (auto state = client->GetSequenceState(*arguments.sequence); !state) {
+      return tl::unexpected(state.error());
+    }
+  }
   const Interrupt interrupt;
   client::ResultStream results = client->WatchResults(
       filter, after < 0 ? std::nullopt : std::optional(static_cast<uint64_t>(after)));

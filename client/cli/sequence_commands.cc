@@ -1,4 +1,7 @@
+#include <unistd.h>
+
 #include <cstdio>
+#include <filesystem>
 
 #include "visionserver/v1/sequence.grpc.pb.h"
 
@@ -43,14 +46,24 @@ Result<v1::ValidateSequenceRequest> Subject(const std::string& id, const std::st
   return request;
 }
 
-Result<void> Validate(Session& session, const std::vector<std::string>& ids,
-                      const std::string& file) {
-  if (ids.size() + (file.empty() ? 0 : 1) != 1) {
+// Who writes "s.json" for the id of a sequence means --file.
+Result<void> CheckIsNoFile(const std::string& id) {
+  std::error_code ignored;
+  if (id.find_first_of("./") == std::string::npos || !std::filesystem::exists(id, ignored)) {
+    return {};
+  }
+  return client::Failure(client::Code::kInvalidArgument,
+                         id + " is a file, not a sequence; did you mean --file " + id + "?");
+}
+
+Result<void> Validate(Session& session, const std::string& id, const std::string& file) {
+  if (id.empty() == file.empty()) {
     return client::Failure(client::Code::kInvalidArgument,
                            "name one stored sequence, or a file with --file");
   }
-  const std::string name = file.empty() ? ids.front() : file;
-  VS_CLI_TRY(const v1::ValidateSequenceRequest request, Subject(name, file));
+  if (const auto checked = CheckIsNoFile(id); !checked) return checked;
+  const std::string name = file.empty() ? id : file;
+  VS_CLI_TRY(const v1::ValidateSequenceRequest request, Subject(id, file));
   VS_CLI_TRY(const v1::ValidateSequenceResponse response,
              Ask(session, &Stub::ValidateSequence, request));
   if (response.faults().empty() || session.options().json) {
@@ -112,11 +125,16 @@ void PrintShortState(const v1::SequenceState& state) {
   PrintLine(state.sequence() + ": " + RunStateWord(state.state()));
 }
 
-Result<void> Create(Session& session, const std::vector<std::string>& ids, const std::string& file,
+Result<void> Create(Session& session, const std::string& id, const std::string& file,
                     bool autostart, bool allow_faults) {
-  VS_CLI_TRY(NamedSpec read, ReadSequenceFile(file));
+  if (const auto checked = CheckIsNoFile(id); !checked) return checked;
+  if (file.empty() && ::isatty(STDIN_FILENO) != 0) {
+    return client::Failure(client::Code::kInvalidArgument,
+                           "name the sequence's JSON with --file, or pipe it in");
+  }
+  VS_CLI_TRY(NamedSpec read, ReadSequenceFile(file.empty() ? "-" : file));
   v1::CreateSequenceRequest request;
-  request.set_id(ids.empty() ? read.id : ids.front());
+  request.set_id(id.empty() ? read.id : id);
   *request.mutable_spec() = std::move(read.spec);
   request.set_autostart(autostart);
   request.set_allow_faults(allow_faults);
@@ -209,16 +227,16 @@ void AddStartStop(CommandLine& line) {
 
 void AddEditing(CommandLine& line) {
   Command& validate = line.Add("sequences validate", "Check a sequence; shows all faults at once");
-  const auto stored = validate.Positionals("SEQUENCE", "Its id", /*optional=*/true);
+  const auto stored = validate.OptionalPositional("SEQUENCE", "Its id");
   const auto checked = validate.Text("--file", "FILE", "Check this JSON instead; - reads it");
   validate.Example("visionctl sequences validate stereo_depth")
       .Example("visionctl sequences validate --file stereo_depth.json");
   validate.Run([=](Session& session) { return Validate(session, *stored, *checked); });
 
   Command& create = line.Add("sequences create", "Store a new sequence from a JSON file");
-  const auto named =
-      create.Positionals("SEQUENCE", "Its id; otherwise that in the file", /*optional=*/true);
-  const auto file = create.Text("--file", "FILE", "As sequences show prints it; - reads it", "-");
+  const auto named = create.OptionalPositional("SEQUENCE", "Its id; otherwise that in the file");
+  const auto file = create.Text("--file", "FILE",
+                                "As sequences show prints it; otherwise it is read from a pipe");
   const auto autostart = create.Flag("--autostart", "Start it whenever the server starts");
   const auto faulty = create.Flag("--allow-faults", "Store it although it cannot be started yet");
   create.Example("visionctl sequences create --file stereo_depth.json --autostart");

@@ -8,7 +8,7 @@ namespace vs::cli {
 namespace {
 
 struct LoginArguments {
-  Argument<std::vector<std::string>> user;
+  Argument<std::string> user;
   Argument<bool> password_stdin;
   Argument<bool> new_password_stdin;
 };
@@ -26,7 +26,7 @@ Result<std::string> NewPassword(bool from_stdin) {
 
 Result<void> Login(Session& session, const LoginArguments& arguments) {
   VS_CLI_TRY(client::Client * client, session.ConnectWithoutLogin());
-  const std::string user = arguments.user->empty() ? "admin" : arguments.user->front();
+  const std::string user = arguments.user->empty() ? "admin" : *arguments.user;
   VS_CLI_TRY(const std::string password,
              *arguments.password_stdin ? ReadPasswordLine()
                                        : AskPassword("Password of " + user, "--password-stdin"));
@@ -84,7 +84,7 @@ void AddSessionCommands(CommandLine& line) {
           "printf '%s\\n' \"$ONE_TIME\" \"$OWN\" | "
           "visionctl login admin --password-stdin --new-password-stdin");
   const LoginArguments arguments = {
-      .user = login.Positionals("USER", "Who logs in; otherwise admin", /*optional=*/true),
+      .user = login.OptionalPositional("USER", "Who logs in; otherwise admin"),
       .password_stdin = login.Flag("--password-stdin", "Read the password from standard input"),
       .new_password_stdin = login.Flag(
           "--new-password-stdin", "After a one-time password, read one's own from the next line")};

@@ -6,11 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/client/cli/server_fixture.h"
+#include "tests/support/wait_until.h"
 
 namespace vs::test {
 namespace {
 
 using nlohmann::json;
+using ::testing::AnyOf;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
@@ -62,10 +64,33 @@ TEST_F(VisionctlDepth, IsReceivedUntilInterrupted) {
 
 TEST_F(VisionctlDepth, SaysWhyThereIsNone) {
   EXPECT_THAT(Fail(5, {"depth", "nothing"}), HasSubstr("nothing"));
-  EXPECT_THAT(Fail(7, {"depth", "sim", "--stream", "missing", "--timeout", "0.5"}),
-              HasSubstr("no depth came within 0.5 s: "));
+  EXPECT_THAT(Fail(5, {"depth", "sim", "--stream", "missing"}),
+              HasSubstr("sim has no stream \"missing\"; there are depth"));
   Succeed({"sequences", "stop", "sim"});
   EXPECT_THAT(Fail(8, {"depth", "sim"}), HasSubstr("visionctl sequences start sim"));
+}
+
+// The simulation makes one pair in fifty seconds: after the first there is time to wait for
+// nothing.
+TEST_F(VisionctlDepth, IsWaitedForNoLongerThanAsked) {
+  std::string slow = SimulatedSequence("slow");
+  slow.replace(slow.find("5.0"), 3, "0.001");
+  Succeed({"sequences", "create", "--file", "-"}, slow);
+  Succeed({"sequences", "start", "slow"});
+  EXPECT_THAT(Fail(7, {"depth", "slow", "--frames", "5", "--timeout", "0.5"}),
+              HasSubstr("no depth came within 0.5 s: "));
+  // With or without the first frame, whichever is quicker.
+  EXPECT_THAT(visionctl_({"depth", "slow", "--duration", "0.5", "--timeout", "3600"}).exit_code,
+              AnyOf(0, 7));
+}
+
+TEST_F(VisionctlDepth, IsReceivedForAsLongAsAsked) {
+  const TempFolder folder;
+  const auto running =
+      visionctl_.Start({"depth", "sim", "--duration", "3600", "--out", folder.path()});
+  EXPECT_TRUE(WaitUntil([&] { return std::filesystem::exists(folder / "frame_000002.png"); }));
+  running->Signal(SIGINT);
+  EXPECT_EQ(0, running->WaitForExit()) << running->ErrorOutput();
 }
 
 TEST_F(VisionctlDepth, IsListedAmongTheStreams) {
@@ -100,6 +125,10 @@ TEST_F(VisionctlDepth, LeavesResultsThatAreFollowedAskedForAndExported) {
   EXPECT_THAT(Fail(6, {"results", "export", "--from", "yesterday"}), HasSubstr("yesterday"));
   EXPECT_THAT(Fail(1, {"results", "export", "--out", "/no/such/folder/r.csv"}),
               HasSubstr("cannot write"));
+}
+
+TEST_F(VisionctlDepth, LeavesNoResultsOfASequenceThatIsNotThere) {
+  EXPECT_THAT(Fail(5, {"results", "tail", "--sequence", "nope"}), HasSubstr("nope"));
 }
 
 TEST_F(VisionctlDepth, StopsFollowingResultsWhenInterrupted) {

@@ -56,6 +56,16 @@ TEST(Output, PrintsErrorsOnOneLineAndFaultsBelow) {
       testing::internal::GetCapturedStderr());
 }
 
+TEST(Output, TellsASingleFaultOnce) {
+  testing::internal::CaptureStderr();
+  PrintError({.code = client::Code::kInvalidArgument,
+              .message = "match.p2: 96 is more than 64",
+              .reason = "INVALID_ARGUMENT",
+              .faults = {{.subject = "match.p2", .message = "96 is more than 64"}}},
+             false);
+  EXPECT_EQ("visionctl: match.p2: 96 is more than 64\n", testing::internal::GetCapturedStderr());
+}
+
 TEST(Words, StandForEnumerations) {
   EXPECT_EQ("admin", RoleWord(v1::ROLE_ADMIN));
   EXPECT_EQ("grey picture", StreamKindWord(v1::STREAM_KIND_GREY_PICTURE));

@@ -1,4 +1,6 @@
 // Sequences and their parameters by visionctl on a whole server.
+#include <fstream>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/client/cli/server_fixture.h"
@@ -112,6 +114,24 @@ TEST_F(VisionctlSequences, TakeParametersWhileTheyRun) {
   EXPECT_THAT(Fail(6, {"set", "sim", "match.p2", "-5"}), HasSubstr("match.p2"));
   EXPECT_THAT(Fail(5, {"set", "nothing", "match.p2", "5"}), HasSubstr("nothing"));
   EXPECT_THAT(Succeed({"get", "sim", "match.p2"}), ContainsRegex("match.p2 +40 "));
+}
+
+TEST_F(VisionctlSequences, HaveExamplesThatWork) {
+  std::ofstream(visionctl_.home() / "stereo_depth.json") << SimulatedSequence("stereo_depth");
+  visionctl_.environment()["VISIONSERVER_ADDRESS"] = server_->address();
+  visionctl_.environment()["VISIONSERVER_FINGERPRINT"] = server_->fingerprint();
+  int tried = 0;
+  for (const char* words :
+       {"sequences create", "sequences start", "sequences show", "sequences validate", "get", "set",
+        "sequences update", "sequences state", "results query", "results export", "sequences stop",
+        "sequences delete"}) {
+    for (const std::string& example : visionctl_.Examples(words)) {
+      const FinishedProcess done = visionctl_.Shell(example);
+      EXPECT_EQ(0, done.exit_code) << example << ": " << done.error_output;
+      ++tried;
+    }
+  }
+  EXPECT_GE(tried, 16);
 }
 
 TEST_F(VisionctlSequences, AreMadeOfBlocksThatCanBeListed) {

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "tests/client/certificates.h"
 #include "tests/client/cli/visionctl.h"
 #include "tests/client/fake_server.h"
@@ -9,9 +11,58 @@
 namespace vs::test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::Lt;
+using ::testing::Ne;
 using ::testing::StartsWith;
+
+constexpr const char* kCommands[] = {"",
+                                     "login",
+                                     "logout",
+                                     "whoami",
+                                     "passwd",
+                                     "sequences",
+                                     "sequences list",
+                                     "sequences show",
+                                     "sequences validate",
+                                     "sequences create",
+                                     "sequences update",
+                                     "sequences delete",
+                                     "sequences start",
+                                     "sequences stop",
+                                     "sequences state",
+                                     "sequences blocks",
+                                     "get",
+                                     "set",
+                                     "depth",
+                                     "streams",
+                                     "streams list",
+                                     "cameras",
+                                     "cameras list",
+                                     "cameras discover",
+                                     "cameras features",
+                                     "cameras get",
+                                     "cameras set",
+                                     "cameras trigger",
+                                     "results",
+                                     "results query",
+                                     "results tail",
+                                     "results export",
+                                     "users",
+                                     "users list",
+                                     "users create",
+                                     "users update",
+                                     "users delete",
+                                     "users reset-password",
+                                     "users sessions",
+                                     "users revoke-session",
+                                     "keys",
+                                     "keys list",
+                                     "keys create",
+                                     "keys revoke",
+                                     "status"};
 
 // Whether it is what a script and a person expect: the code, and one line that begins with the
 // name.
@@ -27,51 +78,7 @@ void ExpectFailure(const FinishedProcess& done, int exit_code, const std::string
 
 TEST(VisionctlUsage, EveryCommandExplainsItself) {
   const Visionctl visionctl;
-  for (const char* words : {"",
-                            "login",
-                            "logout",
-                            "whoami",
-                            "passwd",
-                            "sequences",
-                            "sequences list",
-                            "sequences show",
-                            "sequences validate",
-                            "sequences create",
-                            "sequences update",
-                            "sequences delete",
-                            "sequences start",
-                            "sequences stop",
-                            "sequences state",
-                            "sequences blocks",
-                            "get",
-                            "set",
-                            "depth",
-                            "streams",
-                            "streams list",
-                            "cameras",
-                            "cameras list",
-                            "cameras discover",
-                            "cameras features",
-                            "cameras get",
-                            "cameras set",
-                            "cameras trigger",
-                            "results",
-                            "results query",
-                            "results tail",
-                            "results export",
-                            "users",
-                            "users list",
-                            "users create",
-                            "users update",
-                            "users delete",
-                            "users reset-password",
-                            "users sessions",
-                            "users revoke-session",
-                            "keys",
-                            "keys list",
-                            "keys create",
-                            "keys revoke",
-                            "status"}) {
+  for (const char* words : kCommands) {
     std::vector<std::string> arguments;
     std::istringstream stream(words);
     for (std::string word; stream >> word;) arguments.push_back(word);
@@ -92,6 +99,49 @@ TEST(VisionctlUsage, WrongUsageEndsWithTwo) {
   ExpectFailure(visionctl({"depth", "stereo", "--codec", "gif"}), 2, "gif");
   ExpectFailure(visionctl({"set", "stereo"}), 2, "VALUE");
   ExpectFailure(visionctl({"status", "--timeout", "0"}), 2, "--timeout");
+}
+
+TEST(VisionctlUsage, NamesWhatItDoesNotKnow) {
+  const Visionctl visionctl;
+  ExpectFailure(visionctl({"frob"}), 2, "visionctl has no command \"frob\"");
+  ExpectFailure(visionctl({"cameras", "frob"}), 2, "visionctl cameras has no command \"frob\"");
+  ExpectFailure(visionctl({"--frob"}), 2, "visionctl has no option \"--frob\"");
+  ExpectFailure(visionctl({"login", "ana", "ben", "cleo"}), 2, "ben cleo");
+  ExpectFailure(visionctl({"sequences", "create", "foo", "bar", "--file", "x"}), 2, "bar");
+  ExpectFailure(visionctl({"sequences", "validate", "foo", "bar"}), 2, "bar");
+  ExpectFailure(visionctl({"depth", "stereo", "--frames", "x"}), 2, "\"x\" is no whole number");
+  ExpectFailure(visionctl({"depth", "stereo", "--window", "17"}), 2, "17 is not between 1 and 16");
+  ExpectFailure(visionctl({"depth", "stereo", "--max-fps", "x"}), 2, "\"x\" is no number");
+}
+
+TEST(VisionctlUsage, ASequenceThatIsAFileIsAskedAbout) {
+  const Visionctl visionctl;
+  const std::string file = visionctl.home() / "s.json";
+  std::ofstream(file) << "{}";
+  ExpectFailure(visionctl({"sequences", "create", file}), 6, "did you mean --file " + file + "?");
+  ExpectFailure(visionctl({"sequences", "validate", file}), 6, "did you mean --file " + file);
+}
+
+TEST(VisionctlUsage, ASequenceIsNotTypedByHand) {
+  // script(1) gives the command a terminal.
+  const FinishedProcess done =
+      Visionctl().Shell("script -qec 'visionctl sequences create' /dev/null");
+  EXPECT_EQ(6, done.exit_code);
+  EXPECT_THAT(done.output, HasSubstr("--file"));
+}
+
+TEST(VisionctlUsage, EveryExampleIsUnderstood) {
+  Visionctl visionctl;
+  visionctl.environment()["VISIONSERVER_ADDRESS"] = FakeServer().Address();  // gone by now
+  int tried = 0;
+  for (const char* words : kCommands) {
+    for (const std::string& example : visionctl.Examples(words)) {
+      const FinishedProcess done = visionctl.Shell(example);
+      EXPECT_THAT(done.exit_code, AllOf(Ne(0), Ne(2), Lt(100))) << example << done.error_output;
+      ++tried;
+    }
+  }
+  EXPECT_GE(tried, 20);
 }
 
 TEST(VisionctlUsage, NoServerEndsWithThree) {
@@ -131,6 +181,14 @@ TEST(VisionctlUsage, OptionsThatMakeNoSenseEndWithSix) {
 }
 
 TEST(VisionctlUsage, ErrorsAreJsonWhenAskedFor) {
+  const std::vector<std::vector<std::string>> no_sense = {
+      {"frob", "--json"}, {"--json", "depth", "s", "--frames", "x"}};
+  for (const std::vector<std::string>& wrong : no_sense) {
+    const FinishedProcess usage = Visionctl()(wrong);
+    EXPECT_EQ(2, usage.exit_code);
+    EXPECT_THAT(usage.error_output, StartsWith("{\"code\":\"INVALID_ARGUMENT\""));
+    EXPECT_THAT(usage.error_output, HasSubstr("\"reason\":\"USAGE\""));
+  }
   const FinishedProcess done = Visionctl()({"status", "--server", "cell:port", "--json"});
   EXPECT_EQ(6, done.exit_code);
   EXPECT_THAT(done.error_output, StartsWith("{\"code\":\"INVALID_ARGUMENT\""));

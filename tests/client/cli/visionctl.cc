@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <sstream>
 #include <utility>
 
 namespace vs::test {
@@ -27,6 +29,25 @@ FinishedProcess Visionctl::operator()(const std::vector<std::string>& arguments,
       RunProcess(CommandLine(arguments), {.environment = environment_, .input = input});
   EXPECT_TRUE(done) << done.error().ToString();
   return done ? *done : FinishedProcess();
+}
+
+FinishedProcess Visionctl::Shell(const std::string& line) const {
+  std::map<std::string, std::string> environment = environment_;
+  environment["PATH"] =
+      std::filesystem::path(VS_VISIONCTL).parent_path().string() + ":/usr/bin:/bin";
+  Result<FinishedProcess> done =
+      RunProcess({"/bin/sh", "-c", line}, {.environment = environment, .directory = home_.path()});
+  EXPECT_TRUE(done) << done.error().ToString();
+  return done ? *done : FinishedProcess();
+}
+
+std::vector<std::string> Visionctl::Examples(const std::string& words) const {
+  std::istringstream help(Shell("visionctl " + words + " --help").output);
+  std::vector<std::string> examples;
+  std::string line;
+  while (std::getline(help, line) && line != "Examples:") continue;
+  while (std::getline(help, line) && line.starts_with("  ")) examples.push_back(line.substr(2));
+  return examples;
 }
 
 std::unique_ptr<ChildProcess> Visionctl::Start(const std::vector<std::string>& arguments) const {

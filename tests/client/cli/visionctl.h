@@ -16,6 +16,10 @@ class Visionctl {
 
   FinishedProcess operator()(const std::vector<std::string>& arguments,
                              const std::string& input = "") const;
+  // A line as it is typed: the shell finds visionctl, and the files in home().
+  FinishedProcess Shell(const std::string& line) const;
+  // The lines that the help of a command gives as examples; `words` is "login", "cameras set" ...
+  std::vector<std::string> Examples(const std::string& words) const;
   // Starts it and lets it run.
   std::unique_ptr<ChildProcess> Start(const std::vector<std::string>& arguments) const;
 
