@@ -139,9 +139,8 @@ class FormulaParser {
 
   void Operand() {
     constexpr int kStrongest = 6;
-    if (AtEnd()) {
-      Fail("expected a number, a name or (");
-    } else if (Take("(")) {
+    const char next = AtEnd() ? '\0' : text_[at_];
+    if (Take("(")) {
       Combined(0);
       Expect(")");
     } else if (Take("-")) {
@@ -150,9 +149,9 @@ class FormulaParser {
     } else if (Take("!")) {
       Combined(kStrongest);
       EmitUnary([](double x) { return IsTrue(x) ? 0.0 : 1.0; });
-    } else if (IsDigit(text_[at_]) || text_[at_] == '.') {
+    } else if (IsDigit(next) || next == '.') {
       Number();
-    } else if (IsLetter(text_[at_])) {
+    } else if (IsLetter(next)) {
       Word();
     } else {
       Fail("expected a number, a name or (");

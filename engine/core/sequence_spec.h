@@ -28,7 +28,7 @@ struct Connection {
   std::string to_block;
   std::string to_port;
 
-  auto operator<=>(const Connection&) const = default;
+  auto operator<=>(const Connection&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 // A sequence as plain data: what is stored, sent, compared and edited.

@@ -28,6 +28,7 @@ class CellMemory {
     }
     return memory_.get();
   }
+  size_t Bytes() const { return capacity_; }
 
  private:
   static constexpr size_t kHugePage = size_t{2} << 20;

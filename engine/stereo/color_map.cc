@@ -121,9 +121,9 @@ ColorImage Colorize(int width, int height, ColorMap map, BufferPool& pool, Nearn
 }  // namespace
 
 const std::array<Rgb, 256>& Palette(ColorMap map) {
-  static const std::array<std::array<Rgb, 256>, 4> kPalettes = {
+  static const std::array<std::array<Rgb, 256>, 4> palettes = {
       MakePalette(Grey), MakePalette(Hue), MakePalette(Turbo), MakePalette(Viridis)};
-  return kPalettes[static_cast<size_t>(map)];
+  return palettes[static_cast<size_t>(map)];
 }
 
 Rgb InvalidColor(ColorMap map) { return map == ColorMap::kHue ? Rgb{255, 0, 0} : Rgb{0, 0, 0}; }

@@ -167,8 +167,8 @@ GreyMap MatchGreys(const GreyImage& left, const GreyImage& right, const SgmSetti
   // A standard deviation of less than 4 grey levels.
   if (spread < int64_t{kQuantiles} * kQuantiles * 64 * 64) return {};
   const int64_t gain = GreyMap::kOne * (kQuantiles * sum_lr - sum_l * sum_r) / spread;
-  if (gain < GreyMap::kOne / 2 || gain > GreyMap::kOne * 2) return {};
-  const int64_t offset = (GreyMap::kOne * sum_l - gain * sum_r) / (kQuantiles * 16);
+  if (gain < GreyMap::kOne / 2 || gain > int64_t{GreyMap::kOne} * 2) return {};
+  const int64_t offset = (GreyMap::kOne * sum_l - gain * sum_r) / (int64_t{kQuantiles} * 16);
   return {static_cast<int>(gain), static_cast<int>(offset)};
 }
 

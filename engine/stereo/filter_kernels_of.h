@@ -6,6 +6,7 @@
 
 #include "engine/stereo/filter_kernels.h"
 
+// NOLINTBEGIN(misc-definitions-in-headers): each file that includes this shall have its own.
 namespace {
 
 // Pixels that are filtered at a time, side by side: one register of this instruction set.
@@ -114,3 +115,4 @@ void GatedMedianRow(const uint16_t* const* rows, const uint16_t* const* greys, i
 constexpr vs::FilterKernels kFilterKernels = {&MedianRow<3>, &MedianRow<5>, &GatedMedianRow};
 
 }  // namespace
+// NOLINTEND(misc-definitions-in-headers)

@@ -52,6 +52,8 @@ class ReferenceMatcher final : public StereoMatcher {
     return map;
   }
 
+  size_t WorkingBytes() const override { return costs_.Bytes() + sums_.Bytes(); }
+
  private:
   struct Worker {
     CostRows cost_rows;

@@ -31,6 +31,9 @@ class StereoMatcher {
   virtual Result<DisparityMap> Match(const GreyImage& left, const GreyImage& right,
                                      const SgmSettings& settings, int threads,
                                      BufferPool& pool) = 0;
+  // The large memory that it keeps from picture to picture (each backend's text says how much it
+  // takes); what the pool holds does not count.
+  virtual size_t WorkingBytes() const = 0;
 };
 
 // NOT_FOUND or UNAVAILABLE when this machine cannot run the backend (no such device, no such

@@ -35,16 +35,16 @@ struct UpdateParts {
 };
 
 Result<UpdateParts> PartsOf(const google::protobuf::FieldMask& mask) {
-  static const std::set<std::string> kSpecFields = {"description", "blocks", "connections",
+  static const std::set<std::string> spec_fields = {"description", "blocks", "connections",
                                                     "priority", "max_frames_in_flight"};
-  if (mask.paths().empty()) return UpdateParts{true, kSpecFields};
+  if (mask.paths().empty()) return UpdateParts{true, spec_fields};
   UpdateParts parts;
   for (const std::string& path : mask.paths()) {
     if (path == "autostart") {
       parts.autostart = true;
     } else if (path == "spec") {
-      parts.spec = kSpecFields;
-    } else if (path.starts_with("spec.") && kSpecFields.contains(path.substr(5))) {
+      parts.spec = spec_fields;
+    } else if (path.starts_with("spec.") && spec_fields.contains(path.substr(5))) {
       parts.spec.insert(path.substr(5));
     } else {
       return InvalidArgument(Str("update_mask names ", Quoted(path),
@@ -199,7 +199,7 @@ Result<pb::SequenceState> SequenceService::GetSequenceState(
 
 Result<std::unique_ptr<StreamSource>> SequenceService::WatchSequence(
     const Call& /*call*/, const pb::WatchSequenceRequest& request) {
-  const std::string id = request.id();
+  const std::string& id = request.id();
   if (!id.empty()) {
     if (const auto status = manager_.Look(id); !status) return status.error();
     states_.Renew();  // it may be newer than the last look at all

@@ -143,9 +143,11 @@ void StreamChannel::BeginPacking(const Encoding& encoding, Packed* packed) {
 }
 
 void StreamChannel::PackHere(const Encoding& encoding, Packed* packed) {
-  encoders_.RunHere([&](FrameEncoder& encoder) {
-    packed->item = encoder.Encode(newest_, newest_seq_, encoding);
-  });
+  // Under the lock, which the analysis does not see in a lambda.
+  encoders_.RunHere(
+      [packed, &encoding, &sample = newest_, seq = newest_seq_](FrameEncoder& encoder) {
+        packed->item = encoder.Encode(sample, seq, encoding);
+      });
 }
 
 void StreamChannel::FinishPacking(const Encoding& encoding,

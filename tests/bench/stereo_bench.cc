@@ -48,8 +48,9 @@ struct Options {
 struct Runner {
   std::string matcher;
   std::string isa;
-  std::function<double()> run;  // gives milliseconds
-  std::vector<double> ms;
+  std::function<double()> run;                               // gives milliseconds
+  std::function<size_t()> bytes = [] { return size_t{0}; };  // working memory; 0: not known
+  std::vector<double> ms = {};
 
   double Median() {
     std::sort(ms.begin(), ms.end());
@@ -73,13 +74,17 @@ void PrintCase(const std::string& name, std::vector<Runner>& runners, bool json)
                                          {"isa", runner.isa},
                                          {"median_ms", median},
                                          {"min_ms", runner.ms.front()},
-                                         {"ratio", median / ours}}
+                                         {"ratio", median / ours},
+                                         {"working_bytes", runner.bytes()}}
                               .dump()
                               .c_str());
     } else {
-      std::printf("%-32s %-12s %-9s median %9.2f ms   min %9.2f ms   x %6.2f\n", name.c_str(),
+      std::printf("%-32s %-12s %-9s median %9.2f ms   min %9.2f ms   x %6.2f", name.c_str(),
                   runner.matcher.c_str(), runner.isa.c_str(), median, runner.ms.front(),
                   median / ours);
+      const auto bytes = static_cast<double>(runner.bytes());
+      if (bytes > 0) std::printf("   %6.1f MB", bytes * 1e-6);
+      std::printf("\n");
     }
   }
   std::fflush(stdout);
@@ -115,8 +120,7 @@ class Bench {
   explicit Bench(Options options) : options_(std::move(options)) {
     for (const cpu::Kernels* kernels :
          {cpu::Avx512Kernels(), cpu::Avx2Kernels(), cpu::PortableKernels()}) {
-      if (kernels == nullptr) continue;
-      matchers_.push_back({kernels->name, *cpu::MakeCpuMatcher(kernels)});
+      if (kernels != nullptr) kernels_.push_back(kernels);
     }
     for (const int binning : {2, 1}) {
       const StereoFrame pair = sim::IdealStereo({.binning = binning}).Capture(0, 1, pool_);
@@ -162,8 +166,8 @@ class Bench {
 
   void DepthAndCodecs() {
     const auto& [left, right] = pairs_.at("648x482");
-    DisparityMap map =
-        matchers_.front().second->Match(left, right, {.num_disparities = 128}, 1, pool_).value();
+    const auto matcher = *StereoMatchers::Get().Make("cpu");
+    DisparityMap map = matcher->Match(left, right, {.num_disparities = 128}, 1, pool_).value();
     map.geometry = sim::IdealGeometry(2);
     const size_t pixels = static_cast<size_t>(left.width()) * left.height();
     std::vector<uint8_t> packed(wire::RvlBound(pixels));
@@ -215,20 +219,22 @@ class Bench {
         what[0] == 'n' ? PlainCensus(what[1] - '0') : ApplySgmPreset(what).value();
     settings.num_disparities = range;
     std::vector<Runner> runners;
-    for (const auto& [isa, matcher] : matchers_) {
+    // Each case has matchers of its own, so that their memory is the case's.
+    const auto add = [&](const std::string& name_of, const std::string& isa,
+                         std::shared_ptr<StereoMatcher> matcher) {
       runners.push_back(
-          {"cpu", isa, [&, matcher = matcher.get()] {
+          {name_of, isa,
+           [&, matcher] {
              return MillisecondsOf(
                  [&] { matcher->Match(pair.left, pair.right, settings, threads, pool_).value(); });
-           }});
+           },
+           [matcher] { return matcher->WorkingBytes(); }});
+    };
+    for (const cpu::Kernels* kernels : kernels_) {
+      add("cpu", kernels->name, *cpu::MakeCpuMatcher(kernels));
     }
     if (options_.peers) {
-      runners.push_back(
-          {"reference", "", [&] {
-             return MillisecondsOf([&] {
-               reference_->Match(pair.left, pair.right, settings, threads, pool_).value();
-             });
-           }});
+      add("reference", "", *StereoMatchers::Get().Make("reference"));
       for (const OpenCvPeer& peer : OpenCvPeers()) {
         runners.push_back({std::string(peer.name), "", [&] {
                              cv::setNumThreads(threads);
@@ -241,8 +247,7 @@ class Bench {
 
   const Options options_;
   BufferPool pool_;
-  std::vector<std::pair<std::string, std::unique_ptr<StereoMatcher>>> matchers_;
-  std::unique_ptr<StereoMatcher> reference_ = *StereoMatchers::Get().Make("reference");
+  std::vector<const cpu::Kernels*> kernels_;
   std::map<std::string, Pair> pairs_;
 };
 

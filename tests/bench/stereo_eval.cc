@@ -1,7 +1,7 @@
 // How exact the matcher is on pairs of pictures with ground truth.
 //
 //   stereo_eval --data DIR [--preset NAME] [--set FIELD=VALUE ...] [--backend NAME] [--threads N]
-//               [--noise SIGMA] [--right-gain FACTOR] [--write OUT] [--peers] [--json]
+//               [--noise SIGMA] [--right-gain FACTOR] [--write OUT] [--peers] [--ablation] [--json]
 //   stereo_eval --import-aloe DIR      writes the pair of Debian's opencv-doc as a scene
 //
 // DIR holds a folder for each scene: left.png, right.png, disp.png (16 bit, disparity in px = value
@@ -45,6 +45,7 @@ struct Options {
   double noise = 0;
   double right_gain = 1;
   bool peers = false;
+  bool ablation = false;
   bool json = false;
 };
 
@@ -58,6 +59,37 @@ struct Score {
   double filled_bad2 = 0;
   double ms = 0;
 };
+
+// Settings under a name: the preset that was asked for, or what an ablation changes in it.
+struct Variant {
+  std::string name;
+  std::vector<std::string> set;
+};
+
+std::vector<Variant> VariantsOf(const Options& options) {
+  if (!options.ablation) return {{options.preset, {}}};
+  return {{"all steps", {}},
+          {"no grey term", {"cost=census"}},
+          {"census 5x5", {"census=5x5"}},
+          {"outside cost 14", {"outside_cost=14"}},
+          {"costs as they are", {"smooth_cost=0"}},
+          {"8 directions", {"directions=8"}},
+          {"constant P2", {"p2_slope_permille=0"}},
+          {"whole pixels", {"sub_pixel=off"}},
+          {"strict views", {"left_right_lenient=0"}},
+          {"one view", {"left_right_check=0"}},
+          {"no median", {"median=0"}},
+          {"median 3x3", {"median=3"}},
+          {"no speckles", {"speckle_size=0"}},
+          {"no gated median", {"gated_median=0"}},
+          {"holes stay", {"fill_holes=0"}},
+          {"background", {"fill_background=1"}},
+          {"pre-blur", {"pre_blur=strong"}},
+          {"no pre-blur", {"pre_blur=off"}},
+          {"no gain match", {"match_gain=0"}},
+          {"uniqueness 5 %", {"uniqueness_percent=5"}},
+          {"confidence 40", {"min_confidence=40"}}};
+}
 
 // Each run of holes takes the lesser of the disparities beside it.
 void FillRow(uint16_t* row, int width) {
@@ -128,7 +160,7 @@ class Table {
  public:
   explicit Table(bool json) : json_(json) {
     if (!json) {
-      std::printf("%-14s %-12s %7s %7s %10s %8s %8s %11s %8s\n", "scene", "matcher", "bad-1",
+      std::printf("%-14s %-18s %7s %7s %10s %8s %8s %11s %8s\n", "scene", "matcher", "bad-1",
                   "bad-2", "valid b-2", "avg px", "density", "filled b-2", "ms");
     }
   }
@@ -169,7 +201,7 @@ class Table {
                               .dump()
                               .c_str());
     } else {
-      std::printf("%-14s %-12s %7.2f %7.2f %10.2f %8.3f %8.2f %11.2f %8.1f\n", scene.c_str(),
+      std::printf("%-14s %-18s %7.2f %7.2f %10.2f %8.3f %8.2f %11.2f %8.1f\n", scene.c_str(),
                   matcher.c_str(), s.bad1, s.bad2, s.valid_bad2, s.average_px, s.density,
                   s.filled_bad2, s.ms);
     }
@@ -198,47 +230,62 @@ Status WriteMap(const DisparityMap& map, const std::filesystem::path& path, Buff
   return Status();
 }
 
+Result<SgmSettings> SettingsOf(const Options& options, const Variant& variant) {
+  VS_ASSIGN_OR_RETURN(SgmSettings settings, ApplySgmPreset(options.preset));
+  for (const auto* assignments : {&options.set, &variant.set}) {
+    for (const std::string& assignment : *assignments) {
+      VS_RETURN_IF_ERROR(SetSgmField(assignment, &settings));
+    }
+  }
+  return settings;
+}
+
+Status EvaluateScene(const Options& options, const std::filesystem::path& folder,
+                     StereoMatcher& matcher, BufferPool& pool, Table* table) {
+  VS_ASSIGN_OR_RETURN(StereoScene scene, LoadStereoScene(folder, pool));
+  if (options.noise > 0 || options.right_gain != 1) {
+    scene.left = Disturbed(scene.left, 1, options.noise, 1, pool);
+    scene.right = Disturbed(scene.right, options.right_gain, options.noise, 2, pool);
+  }
+  for (const Variant& variant : VariantsOf(options)) {
+    VS_ASSIGN_OR_RETURN(SgmSettings settings, SettingsOf(options, variant));
+    settings.num_disparities = scene.num_disparities;
+    double ms = 0;
+    DisparityMap map;
+    for (int run = 0; run < 2; ++run) {  // the first one asks for memory
+      const auto begin = std::chrono::steady_clock::now();
+      VS_ASSIGN_OR_RETURN(map,
+                          matcher.Match(scene.left, scene.right, settings, options.threads, pool));
+      ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
+               .count();
+    }
+    table->Add(scene.name, variant.name, ScoreOf(map, scene, ms, pool));
+    if (!options.write.empty()) {
+      const auto path =
+          std::filesystem::path(options.write) / (folder.filename().string() + ".png");
+      VS_RETURN_IF_ERROR(WriteMap(map, path, pool));
+    }
+  }
+  if (!options.peers) return Status();
+  for (const OpenCvPeer& peer : OpenCvPeers()) {
+    const PeerResult result =
+        RunOpenCvPeer(peer, scene.left, scene.right, scene.num_disparities, pool);
+    table->Add(scene.name, std::string(peer.name), ScoreOf(result.map, scene, result.ms, pool));
+  }
+  return Status();
+}
+
 Status Evaluate(const Options& options) {
   BufferPool pool;
-  VS_ASSIGN_OR_RETURN(SgmSettings settings, ApplySgmPreset(options.preset));
-  for (const std::string& assignment : options.set) {
-    VS_RETURN_IF_ERROR(SetSgmField(assignment, &settings));
-  }
   VS_ASSIGN_OR_RETURN(const auto matcher, StereoMatchers::Get().Make(options.backend));
-  std::vector<std::filesystem::path> folders = StereoSceneFoldersIn(options.data);
+  const std::vector<std::filesystem::path> folders = StereoSceneFoldersIn(options.data);
   if (folders.empty()) {
     return NotFound(Str("there is no scene (a folder with meta.json) in ", options.data));
   }
   if (!options.write.empty()) std::filesystem::create_directories(options.write);
   Table table(options.json);
   for (const auto& folder : folders) {
-    VS_ASSIGN_OR_RETURN(StereoScene scene, LoadStereoScene(folder, pool));
-    settings.num_disparities = scene.num_disparities;
-    if (options.noise > 0 || options.right_gain != 1) {
-      scene.left = Disturbed(scene.left, 1, options.noise, 1, pool);
-      scene.right = Disturbed(scene.right, options.right_gain, options.noise, 2, pool);
-    }
-    double ms = 0;
-    DisparityMap map;
-    for (int run = 0; run < 2; ++run) {  // the first one asks for memory
-      const auto begin = std::chrono::steady_clock::now();
-      VS_ASSIGN_OR_RETURN(map,
-                          matcher->Match(scene.left, scene.right, settings, options.threads, pool));
-      ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
-               .count();
-    }
-    table.Add(scene.name, options.preset, ScoreOf(map, scene, ms, pool));
-    if (!options.write.empty()) {
-      const auto path =
-          std::filesystem::path(options.write) / (folder.filename().string() + ".png");
-      VS_RETURN_IF_ERROR(WriteMap(map, path, pool));
-    }
-    if (!options.peers) continue;
-    for (const OpenCvPeer& peer : OpenCvPeers()) {
-      const PeerResult result =
-          RunOpenCvPeer(peer, scene.left, scene.right, scene.num_disparities, pool);
-      table.Add(scene.name, std::string(peer.name), ScoreOf(result.map, scene, result.ms, pool));
-    }
+    VS_RETURN_IF_ERROR(EvaluateScene(options, folder, *matcher, pool, &table));
   }
   table.PrintMeans();
   return Status();
@@ -258,6 +305,7 @@ int Main(int argc, char** argv) {
   app.add_option("--noise", options.noise, "Noise added to both pictures, grey levels (sigma)");
   app.add_option("--right-gain", options.right_gain, "Gain applied to the right picture");
   app.add_flag("--peers", options.peers, "OpenCV's StereoSGBM too");
+  app.add_flag("--ablation", options.ablation, "The preset with one step changed at a time");
   app.add_flag("--json", options.json, "One object for each line");
   CLI11_PARSE(app, argc, argv);
   Status status;

@@ -118,6 +118,13 @@ class CpuMatcher final : public StereoMatcher {
     return map;
   }
 
+  size_t WorkingBytes() const override {
+    size_t bytes = left_features_.Bytes() + right_features_.Bytes() + sums_.Bytes() +
+                   winners_.Bytes() + right_index_.Bytes();
+    for (const auto& sweep : sweeps_) bytes += sweep->Bytes();
+    return bytes;
+  }
+
  private:
   Status Prepare(const GreyImage& left, const GreyImage& right, const SgmSettings& settings,
                  int parts);

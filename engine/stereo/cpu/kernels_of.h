@@ -12,6 +12,7 @@
 
 #define VS_INLINE inline __attribute__((always_inline))
 
+// NOLINTBEGIN(misc-definitions-in-headers): each file that includes this shall have its own.
 namespace {
 
 using vs::cpu::CensusRowWork;
@@ -673,5 +674,6 @@ struct KernelSet {
 };
 
 }  // namespace
+// NOLINTEND(misc-definitions-in-headers)
 
 #undef VS_INLINE

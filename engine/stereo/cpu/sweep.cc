@@ -56,6 +56,13 @@ bool Sweep::Prepare(const SweepFrame* frame, int directions, bool backward, int 
   return true;
 }
 
+size_t Sweep::Bytes() const {
+  size_t bytes = along_.Bytes() + across_.Bytes() + right_.Bytes() + diagonals_[0].Bytes() +
+                 diagonals_[1].Bytes();
+  for (const auto& block : blocks_) bytes += block->costs.Bytes() + block->p2.size();
+  return bytes;
+}
+
 uint8_t* Sweep::Ring(CellMemory& memory, int k, size_t size) const {
   return memory.Reserve(0) + static_cast<size_t>(k % RingRows()) * size;
 }

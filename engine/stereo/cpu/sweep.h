@@ -36,6 +36,8 @@ class Sweep {
   // (likewise). Rows must be swept in order; for a sweep of one direction, and one block, any row
   // may be the first.
   void Rows(int block, int first, int rows, SweepMode mode);
+  // Of the memory that it keeps.
+  size_t Bytes() const;
 
  private:
   struct Block {

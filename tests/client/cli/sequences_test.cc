@@ -100,7 +100,7 @@ TEST_F(VisionctlSequences, AreForThoseWhoseRoleAllowsIt) {
 TEST_F(VisionctlSequences, TakeParametersWhileTheyRun) {
   StartSimulation();
   const std::string all = Succeed({"get", "sim"});
-  EXPECT_THAT(all, ContainsRegex("match.p2 +34 +.*operator"));
+  EXPECT_THAT(all, ContainsRegex("match.p2 +35 +.*operator"));
   EXPECT_THAT(all, ContainsRegex("small.scale +0.2 +0.05 .. 4 +engineer"));
   EXPECT_THAT(Succeed({"get", "sim", "match"}), Not(HasSubstr("small.scale")));
 

@@ -106,7 +106,7 @@ TEST(VisionctlUsage, NamesWhatItDoesNotKnow) {
   ExpectFailure(visionctl({"frob"}), 2, "visionctl has no command \"frob\"");
   ExpectFailure(visionctl({"cameras", "frob"}), 2, "visionctl cameras has no command \"frob\"");
   ExpectFailure(visionctl({"--frob"}), 2, "visionctl has no option \"--frob\"");
-  ExpectFailure(visionctl({"login", "ana", "ben", "cleo"}), 2, "ben cleo");
+  ExpectFailure(visionctl({"login", "ana", "ben", "cleo"}), 2, "not expected");
   ExpectFailure(visionctl({"sequences", "create", "foo", "bar", "--file", "x"}), 2, "bar");
   ExpectFailure(visionctl({"sequences", "validate", "foo", "bar"}), 2, "bar");
   ExpectFailure(visionctl({"depth", "stereo", "--frames", "x"}), 2, "\"x\" is no whole number");
