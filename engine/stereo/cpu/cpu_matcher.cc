@@ -152,6 +152,7 @@ class CpuMatcher final : public StereoMatcher {
   SweepFrame frame_;
   std::vector<std::vector<uint8_t>> feature_rows_;  // by part
   std::vector<std::unique_ptr<Sweep>> sweeps_;
+  CellMemory layout_;
   CellMemory left_features_;
   CellMemory right_features_;
   CellMemory sums_;
@@ -199,11 +200,15 @@ Status CpuMatcher::Prepare(const GreyImage& left, const GreyImage& right,
   frame_ = {.kernels = kernels_, .plan = plan, .kind = KindOf(settings)};
   frame_.penalties = StepsOf(MakePenalties(settings));
   frame_.sums = sums_.Reserve(sums);
+  if (layout_.Reserve(static_cast<size_t>(plan.cell) * kLayoutCells) != nullptr) {
+    kernels_->layout(plan, layout_.Reserve(0));
+    frame_.plan.layout = layout_.Reserve(0);
+  }
   frame_.winners = winners_.Reserve(width * height * WinnerRow::kPlanes);
   frame_.right_index = right_index_.Reserve(width * height);
-  bool enough = plan.left_features != nullptr && plan.right_features != nullptr &&
-                (sums == 0 || frame_.sums != nullptr) && frame_.winners != nullptr &&
-                frame_.right_index != nullptr;
+  bool enough = frame_.plan.layout != nullptr && plan.left_features != nullptr &&
+                plan.right_features != nullptr && (sums == 0 || frame_.sums != nullptr) &&
+                frame_.winners != nullptr && frame_.right_index != nullptr;
 
   // With one direction every part sweeps rows of its own; otherwise there are two sweeps, each by
   // half of the parts.

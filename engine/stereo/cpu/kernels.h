@@ -59,8 +59,12 @@ struct Plan {
   const uint8_t* guide = nullptr;
   size_t guide_stride = 0;
   uint8_t p1 = 0;
-  bool right_view = false;  // the right view's winners are wanted
+  bool right_view = false;          // the right view's winners are wanted
+  const uint8_t* layout = nullptr;  // what Kernels::layout wrote
 };
+
+// Bytes of a cell's layout, in cells.
+inline constexpr int kLayoutCells = 3;
 
 // Costs of row y for the columns [begin, end), smoothed along the row if plan.gate >= 0: cell x
 // goes to row + x * cell.
@@ -143,6 +147,9 @@ struct Kernels {
   int lanes;
   // The least supported number of stripes for a range.
   int (*stripes)(int num_disparities);
+  // Writes what each byte of a cell stands for, the same for all cells of a frame: its index i;
+  // 0xff beyond the range, else 0; the cost of the outside, kBeyond beyond the range.
+  void (*layout)(const Plan& plan, uint8_t* out);
   void (*census_row)(const CensusRowWork& work);
   // P2 between the pixels of two rows of grey values, count pixels each; may write up to the next
   // multiple of `lanes`, and read as far.

@@ -102,27 +102,27 @@ struct Layout {
   int first_inside;
   unsigned inside_count;
 
-  explicit Layout(const Plan& plan)
+  VS_INLINE explicit Layout(const Plan& plan)
       : first_inside(plan.min_disparity + plan.num_disparities - 1),
         inside_count(
             static_cast<unsigned>(Clamp(plan.width - plan.num_disparities + 1, 0, plan.width))) {
-    alignas(64) uint8_t i_bytes[kLanes];
-    alignas(64) uint8_t beyond_bytes[kLanes];
-    alignas(64) uint8_t outside_bytes[kLanes];
-    for (int r = 0; r < kStripes; ++r) {
-      for (int l = 0; l < kLanes; ++l) {
-        const int i = l * kStripes + r;
-        i_bytes[l] = static_cast<uint8_t>(i);
-        beyond_bytes[l] = i < plan.num_disparities ? 0 : 0xff;
-        outside_bytes[l] = i < plan.num_disparities ? plan.outside : kBeyond;
-      }
-      index.v[r] = Simd::Load(i_bytes);
-      beyond.v[r] = Simd::Load(beyond_bytes);
-      outside.v[r] = Simd::Load(outside_bytes);
-      least.v[r] = Simd::Min(beyond.v[r], Simd::Set(kBeyond));
-    }
+    constexpr int kCell = kStripes * kLanes;
+    index.Load(plan.layout);
+    beyond.Load(plan.layout + kCell);
+    outside.Load(plan.layout + 2 * kCell);
+    for (int r = 0; r < kStripes; ++r) least.v[r] = Simd::Min(beyond.v[r], Simd::Set(kBeyond));
   }
 };
+
+inline void MakeLayout(const Plan& plan, uint8_t* out) {
+  for (int k = 0; k < plan.cell; ++k) {
+    const int i = k % kLanes * plan.stripes + k / kLanes;
+    const bool within = i < plan.num_disparities;
+    out[k] = static_cast<uint8_t>(i);
+    out[plan.cell + k] = within ? 0 : 0xff;
+    out[2 * plan.cell + k] = within ? plan.outside : kBeyond;
+  }
+}
 
 // The indices whose counterpart of left pixel x lies inside the right picture.
 struct Inside {
@@ -426,6 +426,42 @@ VS_INLINE void StepInMemory(const Cell<kStripes>& cost, V p1, V p2, uint8_t* pat
   for (int r = 0; r < kStripes; ++r) sum->v[r] = Simd::AddSaturated(sum->v[r], cell.v[r]);
 }
 
+// By winner and stripe: the lane of the one among the winner and its two neighbours that lies in
+// this stripe; kNoLane if none does. Of at least three stripes each holds at most one.
+constexpr uint8_t kNoLane = 255;
+template <int kStripes>
+struct NeighbourLanes {
+  uint8_t of[256][kStripes] = {};
+
+  constexpr NeighbourLanes() {
+    for (int winner = 0; winner < 256; ++winner) {
+      for (int r = 0; r < kStripes; ++r) of[winner][r] = kNoLane;
+      for (int i = winner - 1; i <= winner + 1; ++i) {
+        if (i >= 0) of[winner][i % kStripes] = static_cast<uint8_t>(i / kStripes);
+      }
+    }
+  }
+};
+
+// The least sum of those that are more than one index away from the winner, in all lanes together.
+template <int kStripes>
+VS_INLINE V LeastButNeighbours(const Layout<kStripes>& layout, int winner,
+                               const Cell<kStripes>& sum) {
+  V least = Simd::Set(255);
+  if constexpr (kStripes >= 3) {
+    static constexpr NeighbourLanes<kStripes> kLanesOf;
+    for (int r = 0; r < kStripes; ++r) {
+      least = Simd::MinBut(least, sum.v[r], kLanesOf.of[winner][r]);
+    }
+  } else {
+    for (int r = 0; r < kStripes; ++r) {
+      const V step = AbsoluteDifference(layout.index.v[r], Simd::Set(static_cast<uint8_t>(winner)));
+      least = Simd::Min(least, Simd::IfLess(Simd::Set(1), step, sum.v[r], Simd::Set(255)));
+    }
+  }
+  return least;
+}
+
 // Selects the left winner of pixel x (selection.h).
 template <int kStripes>
 VS_INLINE void SelectLeft(const Plan& plan, const SweepRow& work, const Layout<kStripes>& layout,
@@ -438,12 +474,7 @@ VS_INLINE void SelectLeft(const Plan& plan, const SweepRow& work, const Layout<k
   }
   const int pair = Simd::LeastPair(least);
   const int index = pair & 0xff;
-  const V winner = Simd::Set(static_cast<uint8_t>(index));
-  V second = Simd::Set(255);
-  for (int r = 0; r < kStripes; ++r) {
-    const V step = AbsoluteDifference(layout.index.v[r], winner);
-    second = Simd::Min(second, Simd::IfLess(Simd::Set(1), step, sum.v[r], Simd::Set(255)));
-  }
+  const V second = LeastButNeighbours(layout, index, sum);
   alignas(64) uint8_t sums[kStripes * kLanes];
   sum.Store(sums);
   const auto at = [&](int i) {
@@ -668,8 +699,8 @@ struct KernelSet {
     (mode == SweepMode::kStore ? kernels.store : kernels.finish)[directions - 1](plan, work);
   }
   static constexpr Kernels Make(const char* name) {
-    return {name,  kLanes,  &Stripes, &ComputeCensusRow, &ComputePenaltyRow, &Cost,
-            &Sums, &Window, &Sweep,   &kFilterKernels};
+    return {name,  kLanes, &Stripes, &MakeLayout, &ComputeCensusRow, &ComputePenaltyRow,
+            &Cost, &Sums,  &Window,  &Sweep,      &kFilterKernels};
   }
 };
 

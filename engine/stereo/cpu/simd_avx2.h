@@ -53,6 +53,14 @@ struct Simd {
     return {_mm256_blendv_epi8(yes.v, no.v, not_less)};
   }
 
+  static V MinBut(V a, V b, uint8_t lane) {
+    const __m256i numbers =
+        _mm256_setr_epi8(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20,
+                         21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31);
+    const __m256i excepted = _mm256_cmpeq_epi8(numbers, Set(lane).v);
+    return {_mm256_min_epu8(a.v, _mm256_or_si256(b.v, excepted))};
+  }
+
   static V FromBelow(V a, uint8_t guard) {
     return {_mm256_alignr_epi8(a.v, _mm256_permute2x128_si256(a.v, Set(guard).v, 0x02), 15)};
   }

@@ -38,6 +38,11 @@ struct Simd {
   static V IfLess(V a, V b, V yes, V no) {
     return {_mm512_mask_blend_epi8(_mm512_cmplt_epu8_mask(a.v, b.v), no.v, yes.v)};
   }
+  static V MinBut(V a, V b, uint8_t lane) {
+    const uint64_t excepted = static_cast<uint64_t>(lane < 64) << (lane & 63);
+    return {_mm512_mask_min_epu8(a.v, ~excepted, a.v, b.v)};
+  }
+
   static V FromBelow(V a, uint8_t guard) {
     return {_mm512_mask_permutexvar_epi8(Set(guard).v, ~1ULL, _mm512_load_si512(kDown), a.v)};
   }

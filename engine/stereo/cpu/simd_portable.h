@@ -49,6 +49,12 @@ struct Simd {
   static V IfEqual(V a, V b, V yes, V no) { return a == b ? yes : no; }
   static V IfLess(V a, V b, V yes, V no) { return a < b ? yes : no; }
 
+  // Min(a, b), but a in one lane (255: in none).
+  static V MinBut(V a, V b, uint8_t lane) {
+    const V numbers = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    return Min(a, b | static_cast<V>(numbers == Set(lane)));
+  }
+
   // Each lane from the lane below (above) it; `guard` in the lane that has none.
   static V FromBelow(V a, uint8_t guard) {
     const V places = {16, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14};
