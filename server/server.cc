@@ -17,7 +17,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr int64_t kMinuteNs = int64_t{60} * 1'000'000'000;
-constexpr int64_t kDayNs = 24 * 60 * kMinuteNs;
+constexpr int64_t kDayNs = kMinuteNs * 60 * 24;
 // A graceful end. The steps share the whole; the last bytes have their part for sure.
 constexpr milliseconds kGrace{9000};
 constexpr milliseconds kAnnouncement{200};

@@ -51,6 +51,14 @@ def folders_of(build, files):
     return folders.values()
 
 
+def compiles(entry):
+    """Whether the names of the files do not clash. Much quicker than to ask clang-tidy."""
+    command = entry["command"].replace(" -Werror", "") + " -fsyntax-only -w"
+    run = subprocess.run(["bash", "-c", command], cwd=entry["directory"], capture_output=True,
+                         check=False)
+    return run.returncode == 0
+
+
 def check(build, batch, number):
     """Whether the batch is clean, and what was printed."""
     folder = build / "batches" / number
@@ -61,20 +69,18 @@ def check(build, batch, number):
     command = " ".join(["clang++", *(shlex.quote(o) if " " not in o else o for o in options)])
     entry = {"directory": batch[0][1]["directory"], "file": str(together)}
     entry["command"] = f"{command} -Wno-unneeded-internal-declaration -c {together}"
+    if len(batch) > 1 and not compiles(entry):
+        middle = len(batch) // 2
+        halves = [check(build, batch[:middle], number + "a"),
+                  check(build, batch[middle:], number + "b")]
+        return all(clean for clean, _ in halves), "".join(text for _, text in halves)
     (folder / "compile_commands.json").write_text(json.dumps([entry]))
     run = subprocess.run(
         ["clang-tidy", "--quiet", "-p", str(folder), "--checks=-bugprone-suspicious-include",
          "--header-filter=/(engine|server|client|proto/wire|tests)/[^:]*\\.(h|cc)$",
          "--config-file=.clang-tidy", str(together)],
         capture_output=True, text=True, check=False)
-    if run.returncode == 0:
-        return True, ""
-    if "[clang-diagnostic-error]" in run.stdout and len(batch) > 1:
-        middle = len(batch) // 2
-        halves = [check(build, batch[:middle], number + "a"),
-                  check(build, batch[middle:], number + "b")]
-        return all(clean for clean, _ in halves), "".join(text for _, text in halves)
-    return False, run.stdout
+    return run.returncode == 0, run.stdout if run.returncode else ""
 
 
 def main():

@@ -133,6 +133,7 @@ std::vector<CameraHub::Entry> CameraHub::List() const {
     }
   }
   std::vector<Entry> entries;
+  entries.reserve(open.size());
   for (const auto& [uri, camera] : open) {
     entries.push_back({uri.ToString(), camera->camera().Stats()});
   }

@@ -200,6 +200,7 @@ Result<std::vector<FoundCamera>> DiscoverGevCameras(Milliseconds timeout, const 
   const std::vector<Socket> sockets = BroadcastDiscovery(kId);
   if (sockets.empty()) return Unavailable("this machine has no network interface that is up");
   std::vector<pollfd> events;
+  events.reserve(sockets.size());
   for (const Socket& socket : sockets) events.push_back({socket.fd(), POLLIN, 0});
   std::map<uint32_t, FoundCamera> by_address;
   std::array<uint8_t, 1024> memory;
@@ -221,6 +222,7 @@ Result<std::vector<FoundCamera>> DiscoverGevCameras(Milliseconds timeout, const 
     }
   }
   std::vector<FoundCamera> cameras;
+  cameras.reserve(by_address.size());
   for (auto& [address, camera] : by_address) cameras.push_back(std::move(camera));
   return cameras;
 }

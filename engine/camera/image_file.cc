@@ -96,6 +96,7 @@ Result<std::vector<fs::path>> FindFiles(const fs::path& folder, const std::strin
   }
   std::ranges::sort(found, InCountingOrder);
   std::vector<fs::path> files;
+  files.reserve(found.size());
   for (const std::string& name : found) files.push_back(folder / name);
   return files;
 }

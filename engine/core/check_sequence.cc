@@ -204,6 +204,7 @@ class Checker {
     for (Node& node : nodes_) graph.push_back(std::move(node.downstream));
     for (const std::vector<int>& cycle : FindCycles(graph)) {
       std::vector<std::string> ids;
+      ids.reserve(cycle.size() + 1);
       for (const int node : cycle) ids.push_back(nodes_[node].id);
       ids.push_back(ids.front());
       Add(ids.front(), Str("feeds itself: ", Listed(ids, " -> "), ". Remove one connection"));

@@ -67,7 +67,7 @@ Status AccessControl::Recheck(const std::string& method, const Caller& caller, b
   } else if (caller.kind == Caller::Kind::kApiKey) {
     now = OfApiKey(accounts_->FindApiKeyById(caller.credential_id));
   }
-  const Status allowed = CheckAccess(method, now);
+  Status allowed = CheckAccess(method, now);
   if (allowed.code() == StatusCode::kUnauthenticated) {
     return Unauthenticated("the session has ended; log in again").WithReason("SESSION_ENDED");
   }

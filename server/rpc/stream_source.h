@@ -43,7 +43,7 @@ class StreamSource {
 
   // Before the first Next. `wake` asks for Next again after it said Wait; it may be called from any
   // thread at any time, also after the stream has ended, and only takes note.
-  virtual void Start(std::function<void()> wake) { (void)wake; }
+  virtual void Start(std::function<void()> /*wake*/) {}  // NOLINT(performance-*): kept by some
   virtual StreamStep Next() = 0;
 };
 

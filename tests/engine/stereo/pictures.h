@@ -24,6 +24,7 @@ Image<T> MakeImage(BufferPool& pool, std::initializer_list<std::initializer_list
 template <class T>
 std::vector<std::vector<T>> RowsOf(const Image<T>& image) {
   std::vector<std::vector<T>> rows;
+  rows.reserve(static_cast<size_t>(image.height()));
   for (int y = 0; y < image.height(); ++y) {
     rows.emplace_back(image.Row(y), image.Row(y) + image.width());
   }
