@@ -1,5 +1,6 @@
 // Figures that say how good a depth picture is.
 #include "engine/core/block.h"
+#include "engine/core/region_params.h"
 #include "engine/stereo/plane_fit.h"
 #include "engine/stereo/quality.h"
 
@@ -32,63 +33,25 @@ class DepthQuality final : public Block {
   Out<double> depth_bias{this, "depth_bias",
                          "Mean relative error of depth, % (positive: measured too far). Only with "
                          "truth."};
-  Param<int> roi_x{this,
-                   "roi_x",
-                   {.initial = 0,
-                    .min = 0,
-                    .max = 16384,
-                    .unit = "px",
-                    .operator_editable = true,
-                    .doc = "Left edge of the region that is judged."}};
-  Param<int> roi_y{this,
-                   "roi_y",
-                   {.initial = 0,
-                    .min = 0,
-                    .max = 16384,
-                    .unit = "px",
-                    .operator_editable = true,
-                    .doc = "Upper edge of the region that is judged."}};
-  Param<int> roi_width{this,
-                       "roi_width",
-                       {.initial = 0,
-                        .min = 0,
-                        .max = 16384,
-                        .unit = "px",
-                        .operator_editable = true,
-                        .doc = "Width of the region; 0 reaches to the right edge."}};
-  Param<int> roi_height{this,
-                        "roi_height",
-                        {.initial = 0,
-                         .min = 0,
-                         .max = 16384,
-                         .unit = "px",
-                         .operator_editable = true,
-                         .doc = "Height of the region; 0 reaches to the lower edge."}};
+  RegionParams region{this};
 
   Status Run() override {
-    const PixelRect region = Region();
-    valid.Set(ValidPercent(*disparity, region));
+    valid.Set(ValidPercent(*disparity, *region));
     if (depth.has_value()) {
       // A region without a plane is an answer, not a failure: the figures are missing.
-      if (const Result<PlaneFit> fit = FitPlane(*depth, region, pool())) {
+      if (const Result<PlaneFit> fit = FitPlane(*depth, *region, pool())) {
         plane_rms.Set(fit->rms_m);
         plane_distance.Set(fit->distance_m);
       }
     }
     if (!pair.has_value() || pair->truth == nullptr) return {};
     VS_ASSIGN_OR_RETURN(const TruthScore score,
-                        ScoreAgainstTruth(*disparity, *pair->truth, region));
+                        ScoreAgainstTruth(*disparity, *pair->truth, *region));
     bad1.Set(score.bad1_percent);
     bad2.Set(score.bad2_percent);
     average_error.Set(score.average_error_px);
     depth_bias.Set(score.depth_bias_percent);
     return {};
-  }
-
- private:
-  PixelRect Region() const {
-    const auto extent = [](int size) { return size == 0 ? 16384 : size; };
-    return {*roi_x, *roi_y, extent(*roi_width), extent(*roi_height)};
   }
 };
 

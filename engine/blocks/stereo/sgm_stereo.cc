@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/core/block.h"
+#include "engine/core/region_params.h"
 #include "engine/stereo/match_region.h"
 #include "engine/stereo/match_right_view.h"
 #include "engine/stereo/sgm_presets.h"
@@ -74,38 +75,8 @@ class SgmStereo final : public Block {
               "from their initial value count instead. quality is the most exact; strict fills "
               "nothing in and suits robots; lean is a little quicker; eight searches 8 directions; "
               "paper is Woodward et al. 2010; single_pass shows what speed is possible."}};
-  Param<int> roi_x{this,
-                   "roi_x",
-                   {.initial = 0,
-                    .min = 0,
-                    .max = kMaxPictureWidth,
-                    .unit = "px",
-                    .operator_editable = true,
-                    .doc = "Left edge of the region that is matched; the rest is masked."}};
-  Param<int> roi_y{this,
-                   "roi_y",
-                   {.initial = 0,
-                    .min = 0,
-                    .max = kMaxPictureHeight,
-                    .unit = "px",
-                    .operator_editable = true,
-                    .doc = "Upper edge of the region that is matched."}};
-  Param<int> roi_width{this,
-                       "roi_width",
-                       {.initial = 0,
-                        .min = 0,
-                        .max = kMaxPictureWidth,
-                        .unit = "px",
-                        .operator_editable = true,
-                        .doc = "Width of the region; 0 reaches to the right edge."}};
-  Param<int> roi_height{this,
-                        "roi_height",
-                        {.initial = 0,
-                         .min = 0,
-                         .max = kMaxPictureHeight,
-                         .unit = "px",
-                         .operator_editable = true,
-                         .doc = "Height of the region; 0 reaches to the lower edge."}};
+  // Pixels outside it are masked.
+  RegionParams region{this};
 
   Param<int> min_disparity{
       this,
@@ -345,7 +316,7 @@ class SgmStereo final : public Block {
     }
     const auto match = *view == "right" ? MatchRightView : MatchRegion;
     VS_ASSIGN_OR_RETURN(DisparityMap map, match(*matcher_, pair->left->image, pair->right->image,
-                                                Region(), Settings(), *threads, pool()));
+                                                *region, Settings(), *threads, pool()));
     if (pair->geometry) map.geometry = *pair->geometry;
     disparity.Set(std::move(map));
     return {};
@@ -354,11 +325,6 @@ class SgmStereo final : public Block {
   void Stop() override { matcher_.reset(); }
 
  private:
-  PixelRect Region() const {
-    return {*roi_x, *roi_y, *roi_width == 0 ? kMaxPictureWidth : *roi_width,
-            *roi_height == 0 ? kMaxPictureHeight : *roi_height};
-  }
-
   // The preset's value stays unless the parameter was changed.
   template <class T>
   static void Take(const Param<T>& param, T* field) {
