@@ -2,17 +2,33 @@
 
 #include <cstdint>
 
+#include "engine/stereo/sgm_settings.h"
+#include "engine/stereo/winner_row.h"
+
 namespace vs {
 
-// The inner loops of the filters, a row at a time. Compiled once for every processor and once for
-// each instruction set that a matcher knows; they all compute the same.
+// The inner loops of what follows the sums, a row at a time. Compiled once for every processor and
+// once for each instruction set that a matcher knows; they all compute the same.
 //
-// The rows that they read hold stored disparities, widened: they may be read kFilterMargin pixels
-// to the left of x = 0 and kFilterMargin + kFilterLanes to the right of the last pixel.
+// The rows that the filters read hold stored disparities, widened: they may be read kFilterMargin
+// pixels to the left of x = 0 and kFilterMargin + kFilterLanes to the right of the last pixel.
 inline constexpr int kFilterMargin = 3;
 inline constexpr int kFilterLanes = 64;
 
+// What selection.h says of a row of winners before it knows about the right view: the stored
+// disparity, and the confidence 255 * (N - Z) / N.
+struct MeasureRow {
+  WinnerRow winners;
+  int width = 0;  // at least kMinPictureSize
+  SubPixel sub_pixel = SubPixel::kOff;
+  int first_stored = 0;  // of index 0
+  int last_index = 0;
+  uint16_t* disparity = nullptr;
+  uint8_t* confidence = nullptr;
+};
+
 struct FilterKernels {
+  void (*measure)(const MeasureRow& row);
   // The median of 3 x 3 or 5 x 5 pixels: `rows` are the 3 or 5 rows around.
   void (*median3)(const uint16_t* const* rows, int width, uint16_t* out);
   void (*median5)(const uint16_t* const* rows, int width, uint16_t* out);

@@ -1,6 +1,7 @@
 #include "engine/stereo/gated_filter.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "engine/stereo/selection.h"
@@ -25,6 +26,21 @@ Lanes LoadLanes(const uint16_t* from) {
   return lanes;
 }
 
+Lanes Lesser(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
+Lanes Greater(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
+
+int LeastOf(const Lanes& lanes) {
+  uint16_t least = lanes[0];
+  for (int k = 1; k < 8; ++k) least = std::min<uint16_t>(least, lanes[k]);
+  return least;
+}
+
+int GreatestOf(const Lanes& lanes) {
+  uint16_t greatest = lanes[0];
+  for (int k = 1; k < 8; ++k) greatest = std::max<uint16_t>(greatest, lanes[k]);
+  return greatest;
+}
+
 int SumOf(const Lanes& lanes) {
   int sum = 0;
   for (int k = 0; k < 8; ++k) sum += lanes[k];
@@ -36,6 +52,8 @@ int SumOf(const Lanes& lanes) {
 uint16_t FillValue(const uint16_t* const* rows, const uint16_t* const* greys, int gate, int x) {
   Lanes members[kFillSize];  // those that are none become greater than any
   Lanes present = {};
+  Lanes low = ~Lanes{};
+  Lanes high = {};
   const auto centre = static_cast<uint16_t>(greys[kFillRadius][x] - gate);
   for (int k = 0; k < kFillSize; ++k) {
     const Lanes disparity = LoadLanes(rows[k] + x - kFillRadius);
@@ -44,14 +62,19 @@ uint16_t FillValue(const uint16_t* const* rows, const uint16_t* const* greys, in
                                            (disparity == kInvalidDisparity)) |
                         kBeyondWindow;
     members[k] = disparity | absent;
+    low = Lesser(low, members[k]);
+    high = Greater(high, disparity & ~absent);
     present += absent + 1;  // absent is 0 or 0xffff
   }
   const int count = SumOf(present);
   if (count < kLeastMembers) return kInvalidDisparity;
-  // The greatest value that at most count / 2 members lie below, bit by bit.
-  int median = 0;
-  for (int bit = 0x8000; bit != 0; bit >>= 1) {
-    const auto limit = static_cast<uint16_t>(median | bit);
+  // The greatest value that at most count / 2 members lie below, bit by bit of what it may exceed
+  // the least member by.
+  const int least_member = LeastOf(low);
+  const auto span_of_members = static_cast<unsigned>(GreatestOf(high) - least_member);
+  int median = least_member;
+  for (int bit = static_cast<int>(std::bit_floor(span_of_members)); bit != 0; bit >>= 1) {
+    const auto limit = static_cast<uint16_t>(median + bit);
     Lanes below = {};
     for (const Lanes& row : members) below -= static_cast<Lanes>(row < limit);
     if (SumOf(below) <= count / 2) median = limit;

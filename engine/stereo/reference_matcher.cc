@@ -8,7 +8,6 @@
 
 #include "engine/base/str.h"
 #include "engine/stereo/cell_memory.h"
-#include "engine/stereo/condition_pair.h"
 #include "engine/stereo/cost_window.h"
 #include "engine/stereo/path_cost.h"
 #include "engine/stereo/refine.h"
@@ -21,13 +20,18 @@ namespace {
 
 class ReferenceMatcher final : public StereoMatcher {
  public:
-  Result<DisparityMap> Match(const GreyImage& left_seen, const GreyImage& right_seen,
-                             const SgmSettings& settings, int threads, BufferPool& pool) override {
-    VS_RETURN_IF_ERROR(ValidateSettings(settings));
-    VS_RETURN_IF_ERROR(ValidatePair(left_seen, right_seen));
-    const PicturePair pair = ConditionPair(left_seen, right_seen, settings, pool);
-    const GreyImage& left = pair.left;
-    const GreyImage& right = pair.right;
+  size_t WorkingBytes() const override { return costs_.Bytes() + sums_.Bytes(); }
+
+ private:
+  struct Worker {
+    CostRows cost_rows;
+    Selection selection;
+    std::vector<uint8_t> paths;
+  };
+
+  Result<DisparityMap> MatchConditioned(const PicturePair& pair, const SgmSettings& settings,
+                                        int threads, BufferPool& pool) override {
+    const auto& [left, right] = pair;
     const int width = left.width();
     const int height = left.height();
     parts_ = std::clamp(threads, 1, std::min(width, height));
@@ -51,15 +55,6 @@ class ReferenceMatcher final : public StereoMatcher {
     refiner_.Refine(left, settings, parts_, &team_, pool, &map);
     return map;
   }
-
-  size_t WorkingBytes() const override { return costs_.Bytes() + sums_.Bytes(); }
-
- private:
-  struct Worker {
-    CostRows cost_rows;
-    Selection selection;
-    std::vector<uint8_t> paths;
-  };
 
   // Calls work(worker, begin, end) for each part's share of `count` rows or lines.
   template <class Work>

@@ -6,8 +6,6 @@
 #include <numeric>
 
 #include "engine/stereo/pixel_cost.h"
-#include "engine/stereo/quick_division.h"
-#include "engine/stereo/sub_pixel.h"
 
 namespace vs {
 namespace {
@@ -60,27 +58,10 @@ void OfferToRight(const uint8_t* __restrict sums, const uint8_t* __restrict indi
 }
 
 // V for the left pixel with winner `index`; its counterpart is inside.
-int ViewDifference(const SgmSettings& settings, const uint8_t* right_index, int index,
-                   int counterpart) {
-  int difference = std::abs(right_index[counterpart] - index);
-  if (settings.left_right_lenient && counterpart > 0) {
-    difference = std::min(difference, std::abs(right_index[counterpart - 1] - index));
-  }
-  return difference;
-}
-
-// Rules 3 to 5.
-InvalidReason Judge(const SgmSettings& settings, const GreyImage& left, int x, int y, int index,
-                    int best, int second, int difference, int confidence) {
-  if (difference > settings.left_right_tolerance) {
-    if (index == 0) return InvalidReason::kOutOfRangeFar;
-    if (index == settings.num_disparities - 1) return InvalidReason::kOutOfRangeNear;
-    return Explain(InvalidReason::kOccluded, left, x, y);
-  }
-  if (second * (100 - settings.uniqueness_percent) < best * 100) {
-    return Explain(InvalidReason::kAmbiguous, left, x, y);
-  }
-  return confidence < settings.min_confidence ? InvalidReason::kFiltered : InvalidReason::kNone;
+int ViewDifference(const uint8_t* right_index, int index, int counterpart, bool lenient) {
+  const int difference = std::abs(right_index[counterpart] - index);
+  const int before = counterpart - static_cast<int>(lenient && counterpart > 0);
+  return std::min(difference, std::abs(right_index[before] - index));
 }
 
 }  // namespace
@@ -90,39 +71,54 @@ int DisparityOffset(const SgmSettings& settings) {
 }
 
 void JudgeRow(const SgmSettings& settings, const GreyImage& left, int y, const WinnerRow& winners,
-              const uint8_t* right_index, DisparityMap* map) {
+              const uint8_t* right_index, const FilterKernels& kernels, DisparityMap* map) {
   const int width = left.width();
+  uint16_t* disparity = map->disparity.Row(y);
+  uint8_t* confidence = map->confidence.Row(y);
+  uint8_t* reasons = map->reason.Row(y);
+  kernels.measure(
+      {.winners = winners,
+       .width = width,
+       .sub_pixel = settings.sub_pixel,
+       .first_stored = kDisparityScale * (settings.min_disparity - DisparityOffset(settings)),
+       .last_index = settings.num_disparities - 1,
+       .disparity = disparity,
+       .confidence = confidence});
+  // Copies that no byte that is stored could change.
+  const WinnerRow row = winners;
+  const int min_disparity = settings.min_disparity;
   const int last = settings.num_disparities - 1;
-  const int first_stored = kDisparityScale * (settings.min_disparity - DisparityOffset(settings));
-  uint16_t* disparity_row = map->disparity.Row(y);
-  uint8_t* confidence_row = map->confidence.Row(y);
-  uint8_t* reason_row = map->reason.Row(y);
+  const bool check = settings.left_right_check;
+  const bool lenient = settings.left_right_lenient;
+  const int tolerance = settings.left_right_tolerance;
+  const int least_percent = 100 - settings.uniqueness_percent;
+  const int min_confidence = settings.min_confidence;
   for (int x = 0; x < width; ++x) {
-    const int i = winners.index[x];
-    const int best = winners.best[x];
-    const int second = winners.second[x];
-    int stored = first_stored + kDisparityScale * i;
-    if (i > 0 && i < last) {
-      stored += SubPixelSixteenths(settings.sub_pixel, winners.before[x], best, winners.after[x]);
-    }
-    const int counterpart = x - settings.min_disparity - i;
+    const int i = row.index[x];
+    const int counterpart = x - min_disparity - i;
     InvalidReason reason = InvalidReason::kNone;
-    int confidence = 0;
     if (counterpart < 0 || counterpart >= width) {
       reason = InvalidReason::kBorder;
-    } else if (stored <= 0) {
+    } else if (disparity[x] == 0) {
       reason = InvalidReason::kOutOfRangeFar;
     } else {
-      const int difference =
-          settings.left_right_check ? ViewDifference(settings, right_index, i, counterpart) : 0;
-      const int margin = second == 0 ? 0 : QuickDivide(255 * (second - best), second);
-      confidence = std::max<int>(margin >> std::min(difference, 8), kLeastConfidence);
-      reason = Judge(settings, left, x, y, i, best, second, difference, confidence);
+      const int difference = check ? ViewDifference(right_index, i, counterpart, lenient) : 0;
+      confidence[x] = std::max(static_cast<uint8_t>(confidence[x] >> std::min(difference, 8)),
+                               kLeastConfidence);
+      if (difference > tolerance) {
+        reason = i == 0      ? InvalidReason::kOutOfRangeFar
+                 : i == last ? InvalidReason::kOutOfRangeNear
+                             : Explain(InvalidReason::kOccluded, left, x, y);
+      } else if (row.second[x] * least_percent < row.best[x] * 100) {
+        reason = Explain(InvalidReason::kAmbiguous, left, x, y);
+      } else if (confidence[x] < min_confidence) {
+        reason = InvalidReason::kFiltered;
+      }
     }
-    const bool valid = reason == InvalidReason::kNone;
-    disparity_row[x] = valid ? static_cast<uint16_t>(stored) : kInvalidDisparity;
-    confidence_row[x] = valid ? static_cast<uint8_t>(confidence) : 0;
-    reason_row[x] = static_cast<uint8_t>(reason);
+    reasons[x] = static_cast<uint8_t>(reason);
+    if (reason == InvalidReason::kNone) continue;
+    disparity[x] = kInvalidDisparity;
+    confidence[x] = 0;
   }
 }
 
@@ -169,7 +165,7 @@ void Selection::SelectLeft(const CellVolume& sums, int y) {
 void Selection::Row(const CellVolume& sums, const GreyImage& left, int y, DisparityMap* map) {
   if (settings_.left_right_check) SelectRight(sums, y);
   SelectLeft(sums, y);
-  JudgeRow(settings_, left, y, winners_, right_index_.data(), map);
+  JudgeRow(settings_, left, y, winners_, right_index_.data(), PlainFilterKernels(), map);
 }
 
 }  // namespace vs

@@ -5,6 +5,7 @@
 
 #include "engine/image/disparity_map.h"
 #include "engine/image/image.h"
+#include "engine/stereo/filter_kernels.h"
 #include "engine/stereo/path_cost.h"
 #include "engine/stereo/sgm_settings.h"
 #include "engine/stereo/winner_row.h"
@@ -32,8 +33,13 @@ namespace vs {
 // where it is <= 3, kLowTexture where the greys within 2 px (inside the picture) span less than 8
 // levels, else `reason`.
 //
-// Stored disparity: 16 * (d - offset_px) + SubPixelSixteenths (sub_pixel.h), the latter 0 where i
-// is the first or last index. offset_px is 0, or min_disparity - 1 if that is negative.
+// Stored disparity: 16 * (d - offset_px) + sub-pixel sixteenths, the latter 0 where i is the first
+// or last index. offset_px is 0, or min_disparity - 1 if that is negative. The sixteenths say where
+// the minimum lies between the winner's neighbours: with n = 8 * (S(x, i - 1) - S(x, i + 1)),
+// rounded to the nearest integer, halves upwards, -8..8,
+//   kEquiangular  n / (max(S(x, i - 1), S(x, i + 1)) - Z)
+//   kParabola     n / (S(x, i - 1) + S(x, i + 1) - 2 Z)
+// and 0 where the divisor is 0.
 //
 // Confidence: 255 * (N - Z) / N in integers (0 if N is 0), shifted right by V, but at least 2: 0
 // means invalid and 1 means that a filter has put the value there (kFilledConfidence).
@@ -48,7 +54,7 @@ inline constexpr uint8_t kLeastConfidence = 2;
 // From winners to disparities: writes row `y` of the three images of `map`. `right_index` is the
 // right view's row of winners; not looked at without left_right_check.
 void JudgeRow(const SgmSettings& settings, const GreyImage& left, int y, const WinnerRow& winners,
-              const uint8_t* right_index, DisparityMap* map);
+              const uint8_t* right_index, const FilterKernels& kernels, DisparityMap* map);
 
 // Selects the disparities of single rows. Keeps scratch memory; one per thread.
 class Selection {

@@ -8,6 +8,14 @@
 
 namespace vs {
 
+Result<DisparityMap> StereoMatcher::Match(const GreyImage& left, const GreyImage& right,
+                                          const SgmSettings& settings, int threads,
+                                          BufferPool& pool) {
+  VS_RETURN_IF_ERROR(ValidateSettings(settings));
+  VS_RETURN_IF_ERROR(ValidatePair(left, right));
+  return MatchConditioned(ConditionPair(left, right, settings, pool), settings, threads, pool);
+}
+
 StereoMatchers& StereoMatchers::Get() {
   static StereoMatchers matchers;
   return matchers;

@@ -10,6 +10,7 @@
 #include "engine/image/buffer.h"
 #include "engine/image/disparity_map.h"
 #include "engine/image/image.h"
+#include "engine/stereo/condition_pair.h"
 #include "engine/stereo/sgm_settings.h"
 
 namespace vs {
@@ -28,12 +29,17 @@ class StereoMatcher {
   // only, the caller knows the rest. `threads` (at least 1) changes the time, never the result.
   // Errors: INVALID_ARGUMENT as ValidateSettings and ValidatePair say, RESOURCE_EXHAUSTED when
   // there is not enough memory.
-  virtual Result<DisparityMap> Match(const GreyImage& left, const GreyImage& right,
-                                     const SgmSettings& settings, int threads,
-                                     BufferPool& pool) = 0;
+  Result<DisparityMap> Match(const GreyImage& left, const GreyImage& right,
+                             const SgmSettings& settings, int threads, BufferPool& pool);
   // The large memory that it keeps from picture to picture (each backend's text says how much it
   // takes); what the pool holds does not count.
   virtual size_t WorkingBytes() const = 0;
+
+ private:
+  // What Match does with a valid pair after ConditionPair.
+  virtual Result<DisparityMap> MatchConditioned(const PicturePair& pair,
+                                                const SgmSettings& settings, int threads,
+                                                BufferPool& pool) = 0;
 };
 
 // NOT_FOUND or UNAVAILABLE when this machine cannot run the backend (no such device, no such

@@ -9,6 +9,7 @@
 #define VS_INLINE inline __attribute__((always_inline))
 
 // NOLINTBEGIN(misc-definitions-in-headers): each file that includes this shall have its own.
+// NOLINTBEGIN(bugprone-implicit-widening-of-multiplication-result): places within a cell.
 namespace {
 
 using vs::cpu::CensusRowWork;
@@ -63,12 +64,14 @@ struct Layout {
   Cell<kStripes> least;   // kBeyond where the index is beyond the range, else 0
   Cell<kStripes>
       outside;  // the cost of a counterpart outside the picture, kBeyond beyond the range
+  bool full;    // no index is beyond the range
   // Left pixels first_inside .. first_inside + inside_count - 1 have all their counterparts inside.
   int first_inside;
   unsigned inside_count;
 
   VS_INLINE explicit Layout(const Plan& plan)
-      : first_inside(plan.min_disparity + plan.num_disparities - 1),
+      : full(plan.num_disparities == kStripes * kLanes),
+        first_inside(plan.min_disparity + plan.num_disparities - 1),
         inside_count(
             static_cast<unsigned>(Clamp(plan.width - plan.num_disparities + 1, 0, plan.width))) {
     constexpr int kCell = kStripes * kLanes;
@@ -125,4 +128,5 @@ VS_INLINE void SetOutside(const Plan& plan, const Layout<kStripes>& layout, int 
 }
 
 }  // namespace
+// NOLINTEND(bugprone-implicit-widening-of-multiplication-result)
 // NOLINTEND(misc-definitions-in-headers)

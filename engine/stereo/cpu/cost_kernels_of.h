@@ -5,6 +5,7 @@
 #include "engine/stereo/cpu/cells_of.h"
 
 // NOLINTBEGIN(misc-definitions-in-headers): each file that includes this shall have its own.
+// NOLINTBEGIN(bugprone-implicit-widening-of-multiplication-result): places within a cell.
 namespace {
 
 inline void ComputeCensusRow(const CensusRowWork& work) {
@@ -38,27 +39,14 @@ inline void ComputePenaltyRow(const PenaltySteps& steps, const uint8_t* grey, co
   }
 }
 
-// Where the counterparts of a left pixel lie in the first plane of a row of the right view, by
-// stripe. One pixel farther every place is one less, so that a stripe moves on to where the stripe
-// before it was.
-template <int kStripes>
-struct RightPlaces {
-  const uint8_t* at[kStripes];
-
-  VS_INLINE RightPlaces(const Plan& plan, const uint8_t* row, int x) {
-    const int first = plan.width - 1 - x + plan.min_disparity + plan.cell;
-    for (int r = 0; r < kStripes; ++r) {
-      // Too far away to be looked at; any place inside will do.
-      const auto place = static_cast<unsigned>(Clamp(first + r, 0, plan.width + 2 * plan.cell));
-      at[r] = row + (place % kStripes) * plan.right_stride + place / kStripes;
-    }
+inline void ComputeLikenessRow(int gate, const uint8_t* grey, const uint8_t* from, int count,
+                               uint8_t* like) {
+  const V most = Simd::Set(static_cast<uint8_t>(gate));
+  for (int x = 0; x < count; x += kLanes) {
+    const V step = AbsoluteDifference(Simd::LoadAnywhere(grey + x), Simd::LoadAnywhere(from + x));
+    Simd::StoreAnywhere(like + x, Simd::IfLess(most, step, Simd::Set(0), Simd::Set(255)));
   }
-  VS_INLINE void Advance() {
-    const uint8_t* last = at[kStripes - 1];
-    for (int r = kStripes - 1; r > 0; --r) at[r] = at[r - 1];
-    at[0] = last - 1;
-  }
-};
+}
 
 constexpr int CensusBytesOf(CostKind kind) {
   switch (kind) {
@@ -80,36 +68,95 @@ constexpr bool HasAd(CostKind kind) {
          kind == CostKind::kAdCensus8;
 }
 
-// C(x, i) of pixel_cost.h for one vector of indices. `left` is the left pixel in the first plane,
-// `right` its counterparts there.
-template <CostKind kKind>
-VS_INLINE V PixelCost(const Plan& plan, const uint8_t* left, const uint8_t* right,
-                      size_t right_plane) {
+constexpr int PlanesOf(CostKind kind) {
+  if (kind == CostKind::kSad) return 1;
+  if (kind == CostKind::kBirchfieldTomasi) return 3;
+  return CensusBytesOf(kind) + (HasAd(kind) ? 1 : 0);
+}
+
+// The features of a left pixel's counterparts. One pixel farther every place in the mirrored row is
+// one less, so that a stripe finds what the stripe before it had, and only the first one anything
+// new. So the features stay in registers where there are enough of these.
+template <int kStripes, int kPlanes>
+class Counterparts {
+ public:
+  // `row` is the row of the right view, x the left pixel.
+  VS_INLINE Counterparts(const Plan& plan, const uint8_t* row, int x)
+      : plane_size_(kStripes * plan.right_stride) {
+    const int first = plan.width - 1 - x + plan.min_disparity + plan.cell;
+#pragma GCC unroll 16
+    for (int r = 0; r < kStripes; ++r) {
+      // Too far away to be looked at; any place inside will do.
+      const auto place = static_cast<unsigned>(Clamp(first + r, 0, plan.width + 2 * plan.cell));
+      at_[r] = row + (place % kStripes) * plan.right_stride + place / kStripes;
+      if constexpr (kHeld) {
+#pragma GCC unroll 16
+        for (int p = 0; p < kPlanes; ++p) held_[p].v[r] = Read(p, r);
+      }
+    }
+  }
+  VS_INLINE void Advance() {
+    const uint8_t* last = at_[kStripes - 1];
+#pragma GCC unroll 16
+    for (int r = kStripes - 1; r > 0; --r) at_[r] = at_[r - 1];
+    at_[0] = last - 1;
+    if constexpr (kHeld) {
+#pragma GCC unroll 16
+      for (int p = 0; p < kPlanes; ++p) {
+#pragma GCC unroll 16
+        for (int r = kStripes - 1; r > 0; --r) held_[p].v[r] = held_[p].v[r - 1];
+        held_[p].v[0] = Read(p, 0);
+      }
+    }
+  }
+  VS_INLINE V Feature(int plane, int stripe) const {
+    if constexpr (kHeld) {
+      return held_[plane].v[stripe];
+    } else {
+      return Read(plane, stripe);
+    }
+  }
+
+ private:
+  static constexpr bool kHeld = kStripes * kPlanes <= Simd::kRegisters / 2;
+
+  VS_INLINE V Read(int plane, int stripe) const {
+    return Simd::LoadAnywhere(at_[stripe] + static_cast<size_t>(plane) * plane_size_);
+  }
+
+  size_t plane_size_;
+  const uint8_t* at_[kStripes];  // the first plane's features, by stripe
+  Cell<kStripes> held_[kHeld ? kPlanes : 1];
+};
+
+// C(x, i) of pixel_cost.h for one stripe of indices. `left` is the left pixel in the first plane.
+template <CostKind kKind, int kStripes>
+VS_INLINE V PixelCost(const Plan& plan, const uint8_t* left,
+                      const Counterparts<kStripes, PlanesOf(kKind)>& right, int stripe) {
   const size_t left_plane = static_cast<size_t>(plan.width);
   const V limit = Simd::Set(plan.limit);
   if constexpr (kKind == CostKind::kSad) {
-    return Simd::Min(AbsoluteDifference(Simd::Set(left[0]), Simd::LoadAnywhere(right)), limit);
+    return Simd::Min(AbsoluteDifference(Simd::Set(left[0]), right.Feature(0, stripe)), limit);
   } else if constexpr (kKind == CostKind::kBirchfieldTomasi) {
     const V l = Simd::Set(left[0]);
     const V l_low = Simd::Set(left[left_plane]);
     const V l_high = Simd::Set(left[2 * left_plane]);
-    const V r = Simd::LoadAnywhere(right);
-    const V r_low = Simd::LoadAnywhere(right + right_plane);
-    const V r_high = Simd::LoadAnywhere(right + 2 * right_plane);
+    const V r = right.Feature(0, stripe);
+    const V r_low = right.Feature(1, stripe);
+    const V r_high = right.Feature(2, stripe);
     const V a = Simd::Max(Simd::SubtractSaturated(l, r_high), Simd::SubtractSaturated(r_low, l));
     const V b = Simd::Max(Simd::SubtractSaturated(r, l_high), Simd::SubtractSaturated(l_low, r));
     return Simd::Min(Simd::Min(a, b), limit);
   } else {
     constexpr int kBytes = CensusBytesOf(kKind);
-    V cost = Simd::BitCount(Simd::Xor(Simd::Set(left[0]), Simd::LoadAnywhere(right)));
+    V cost = Simd::BitCount(Simd::Xor(Simd::Set(left[0]), right.Feature(0, stripe)));
     for (int b = 1; b < kBytes; ++b) {
       const V code = Simd::Set(left[b * left_plane]);
-      cost = Simd::Add(
-          cost, Simd::BitCount(Simd::Xor(code, Simd::LoadAnywhere(right + b * right_plane))));
+      cost = Simd::Add(cost, Simd::BitCount(Simd::Xor(code, right.Feature(b, stripe))));
     }
     if constexpr (kBytes > 3) cost = Simd::Average(cost, Simd::Set(0));
     if constexpr (HasAd(kKind)) {
-      const V grey = Simd::LoadAnywhere(right + kBytes * right_plane);
+      const V grey = right.Feature(kBytes, stripe);
       const V step = AbsoluteDifference(Simd::Set(left[kBytes * left_plane]), grey);
       cost = Simd::Add(cost, Simd::Min(step, limit));
     }
@@ -127,28 +174,21 @@ class RawCosts {
         left_(plan.left_features + static_cast<size_t>(y) * plan.planes * plan.width),
         right_(plan.right_features +
                static_cast<size_t>(y) * plan.planes * kStripes * plan.right_stride),
-        places_(plan, right_, 0) {}
+        counterparts_(plan, right_, 0) {}
 
   // The cell of column x; afterwards that of x + 1 can be had.
-  VS_INLINE void Compute(int x, uint8_t* out) {
-    if (x != next_) places_ = RightPlaces<kStripes>(plan_, right_, x);
+  VS_INLINE void Compute(int x, Cell<kStripes>* cost) {
+    if (x != next_) counterparts_ = Counterparts<kStripes, PlanesOf(kKind)>(plan_, right_, x);
+    *cost = layout_.outside;
+    next_ = -1;
+    if (!AnyInside(x)) return;
+    for (int r = 0; r < kStripes; ++r) {
+      cost->v[r] = PixelCost<kKind>(plan_, left_ + x, counterparts_, r);
+      if (!layout_.full) cost->v[r] = Simd::Max(cost->v[r], layout_.least.v[r]);
+    }
+    SetOutside(plan_, layout_, x, cost);
+    counterparts_.Advance();
     next_ = x + 1;
-    Cell<kStripes> cost = layout_.outside;
-    if (AnyInside(x)) {
-      const size_t right_plane = kStripes * plan_.right_stride;
-      for (int r = 0; r < kStripes; ++r) {
-        const V pixel = PixelCost<kKind>(plan_, left_ + x, places_.at[r], right_plane);
-        cost.v[r] = Simd::Max(pixel, layout_.least.v[r]);
-      }
-      SetOutside(plan_, layout_, x, &cost);
-    }
-    cost.Store(out);
-    // Beyond the right view there is nothing to advance to.
-    if (AnyInside(x)) {
-      places_.Advance();
-    } else {
-      next_ = -1;
-    }
   }
 
  private:
@@ -162,17 +202,21 @@ class RawCosts {
   const Layout<kStripes>& layout_;
   const uint8_t* left_;
   const uint8_t* right_;
-  RightPlaces<kStripes> places_;
+  Counterparts<kStripes, PlanesOf(kKind)> counterparts_;
   int next_ = 0;
 };
 
+// The mean of a cell and its neighbours before and after, which stop at an edge.
 template <int kStripes>
-VS_INLINE void SmoothAlong(const uint8_t* before, const uint8_t* centre, const uint8_t* after,
-                           uint8_t* out) {
+VS_INLINE void SmoothAlong(const Cell<kStripes>& before, uint8_t like_before,
+                           const Cell<kStripes>& centre, const Cell<kStripes>& after,
+                           uint8_t like_after, uint8_t* out) {
+  const V use_before = Simd::Set(like_before);
+  const V use_after = Simd::Set(like_after);
   for (int r = 0; r < kStripes; ++r) {
-    const V c = Simd::Load(centre + r * kLanes);
-    const V sides = Simd::Average(Simd::Load(before + r * kLanes), Simd::Load(after + r * kLanes));
-    Simd::Store(out + r * kLanes, Simd::Average(c, sides));
+    const V b = Simd::Choose(use_before, before.v[r], centre.v[r]);
+    const V a = Simd::Choose(use_after, after.v[r], centre.v[r]);
+    Simd::Store(out + r * kLanes, Simd::Average(centre.v[r], Simd::Average(b, a)));
   }
 }
 
@@ -180,37 +224,39 @@ VS_INLINE void SmoothAlong(const uint8_t* before, const uint8_t* centre, const u
 template <int kStripes, class Work, class Compute>
 VS_INLINE void MakeCostRow(const Plan& plan, const Work& work, Compute compute) {
   constexpr int kCell = kStripes * kLanes;
+  const auto out = [&](int x) { return work.row + static_cast<size_t>(x) * kCell; };
+  Cell<kStripes> before;
+  Cell<kStripes> centre;
+  Cell<kStripes> after;
+  after.Fill(0);
+  centre.Fill(0);
   if (plan.gate < 0) {
     for (int x = work.begin; x < work.end; ++x) {
-      compute(x, work.row + static_cast<size_t>(x) * kCell);
+      compute(x, &after);
+      after.Store(out(x));
     }
     return;
   }
-  // Three cells are looked at, a fourth is being made.
-  const auto raw = [&](int x) {
-    uint8_t* slot = work.scratch + static_cast<size_t>(x & 3) * kCell;
-    compute(x, slot);
-    return slot;
-  };
-  const uint8_t* grey = plan.guide + static_cast<size_t>(work.y) * plan.guide_stride;
-  const uint8_t* before = raw(work.begin > 0 ? work.begin - 1 : work.begin);
-  const uint8_t* centre = raw(work.begin);
-  for (int x = work.begin; x < work.end; ++x) {
-    const uint8_t* after = x + 1 < plan.width ? raw(x + 1) : centre;
-    const bool like_before = x > 0 && Distance(grey[x], grey[x - 1]) <= plan.gate;
-    const bool like_after = x + 1 < plan.width && Distance(grey[x], grey[x + 1]) <= plan.gate;
-    SmoothAlong<kStripes>(like_before ? before : centre, centre, like_after ? after : centre,
-                          work.row + static_cast<size_t>(x) * kCell);
+  const int end = work.end < plan.width ? work.end + 1 : plan.width;
+  for (int x = work.begin > 0 ? work.begin - 1 : 0; x < end; ++x) {
     before = centre;
     centre = after;
+    compute(x, &after);
+    if (x > work.begin) {
+      SmoothAlong(before, work.like_before[x - 1], centre, after, work.like_before[x], out(x - 1));
+    }
+  }
+  if (work.end == plan.width) {
+    SmoothAlong(centre, work.like_before[end - 1], after, after, 0, out(end - 1));
   }
 }
 
 // The window's mean, rounded to the nearest.
 template <int kStripes>
 void AverageWindow(const Plan& plan, const Layout<kStripes>& layout, int x,
-                   const uint16_t* const* sums, uint8_t* out) {
+                   const uint16_t* const* sums, Cell<kStripes>* mean) {
   constexpr int kCell = kStripes * kLanes;
+  alignas(64) uint8_t out[kCell];
   alignas(64) uint16_t total[kCell] = {};
   for (int k = 0; k < plan.window_height; ++k) {
     const uint16_t* row = sums[k] + static_cast<size_t>(x) * kCell;
@@ -226,13 +272,9 @@ void AverageWindow(const Plan& plan, const Layout<kStripes>& layout, int x,
     const uint32_t sum = total[i] < (1U << 14) ? total[i] : 0;
     out[i] = static_cast<uint8_t>(((sum + half) * reciprocal) >> shift);
   }
-  Cell<kStripes> mean;
-  mean.Load(out);
-  for (int r = 0; r < kStripes; ++r) {
-    mean.v[r] = Simd::Max(mean.v[r], layout.least.v[r]);
-  }
-  SetOutside(plan, layout, x, &mean);
-  mean.Store(out);
+  mean->Load(out);
+  for (int r = 0; r < kStripes; ++r) mean->v[r] = Simd::Max(mean->v[r], layout.least.v[r]);
+  SetOutside(plan, layout, x, mean);
 }
 
 template <int kStripes>
@@ -263,8 +305,8 @@ void ComputeWindowRow(const Plan& shared_plan, const WindowRow& shared_work) {
   const Plan plan = shared_plan;  // see SweepPixels
   const WindowRow work = shared_work;
   const Layout<kStripes> layout(plan);
-  MakeCostRow<kStripes>(plan, work, [&](int x, uint8_t* out) {
-    AverageWindow<kStripes>(plan, layout, x, work.sums, out);
+  MakeCostRow<kStripes>(plan, work, [&](int x, Cell<kStripes>* cell) {
+    AverageWindow<kStripes>(plan, layout, x, work.sums, cell);
   });
 }
 
@@ -274,8 +316,13 @@ void ComputeCostRow(const Plan& shared_plan, const CostRow& shared_work) {
   const CostRow work = shared_work;
   const Layout<kStripes> layout(plan);
   RawCosts<kStripes, kKind> raw(plan, layout, work.y);
-  MakeCostRow<kStripes>(plan, work, [&](int x, uint8_t* out) { raw.Compute(x, out); });
+  // Inlined, so that its state stays in registers.
+  MakeCostRow<kStripes>(
+      plan, work, [&](int x, Cell<kStripes>* cell) __attribute__((always_inline)) {
+        raw.Compute(x, cell);
+      });
 }
 
 }  // namespace
+// NOLINTEND(bugprone-implicit-widening-of-multiplication-result)
 // NOLINTEND(misc-definitions-in-headers)

@@ -18,7 +18,7 @@ bool CostSource::Prepare(const Kernels* kernels, const Plan* plan, CostKind kind
   end_ = end;
   held_rows_.assign(kRows, -1);
   if (rows_.Reserve(kRows * RowBytes()) == nullptr) return false;
-  if (scratch_.Reserve(size_t{4} * plan->cell) == nullptr) return false;
+  like_before_.resize(static_cast<size_t>(plan->width + 1 + kernels->lanes));
   if (!HasWindow()) return true;
   held_sums_.assign(static_cast<size_t>(plan->window_height), -1);
   window_.resize(held_sums_.size());
@@ -31,10 +31,11 @@ const uint8_t* CostSource::Row(int y) {
   uint8_t* row = rows_.Reserve(0) + slot * RowBytes();
   if (held_rows_[slot] == y) return row;
   held_rows_[slot] = y;
-  uint8_t* scratch = scratch_.Reserve(0);
+  const uint8_t* like_before = LikeBefore(y);
   if (!HasWindow()) {
-    kernels_->cost_row(*plan_, kind_,
-                       {.y = y, .begin = begin_, .end = end_, .row = row, .scratch = scratch});
+    kernels_->cost_row(
+        *plan_, kind_,
+        {.y = y, .begin = begin_, .end = end_, .row = row, .like_before = like_before});
     return row;
   }
   const int top = y - plan_->window_height / 2;
@@ -46,8 +47,18 @@ const uint8_t* CostSource::Row(int y) {
                                 .end = end_,
                                 .sums = window_.data(),
                                 .row = row,
-                                .scratch = scratch});
+                                .like_before = like_before});
   return row;
+}
+
+const uint8_t* CostSource::LikeBefore(int y) {
+  if (plan_->gate < 0) return nullptr;
+  const uint8_t* grey = plan_->guide + y * plan_->guide_stride + begin_;
+  kernels_->likeness_row(plan_->gate, grey, grey - 1, end_ + 1 - begin_,
+                         like_before_.data() + begin_);
+  // At the border there is no neighbour.
+  if (begin_ == 0) like_before_[0] = 0;
+  return like_before_.data();
 }
 
 uint16_t* CostSource::Sums(int y) {

@@ -17,11 +17,12 @@ class CostSource {
   // Row y, smoothed along the row if the plan says so; valid until a row more than one away is
   // asked for.
   const uint8_t* Row(int y);
-  size_t Bytes() const { return rows_.Bytes() + scratch_.Bytes() + window_rows_.Bytes(); }
+  size_t Bytes() const { return rows_.Bytes() + window_rows_.Bytes(); }
 
  private:
   bool HasWindow() const { return plan_->window_width * plan_->window_height > 1; }
   size_t RowBytes() const { return static_cast<size_t>(plan_->width) * plan_->cell; }
+  const uint8_t* LikeBefore(int y);
   uint16_t* Sums(int y);
 
   const Kernels* kernels_ = nullptr;
@@ -29,9 +30,9 @@ class CostSource {
   CostKind kind_ = CostKind::kSad;
   int begin_ = 0;
   int end_ = 0;
-  CellMemory rows_;         // three rows
-  CellMemory scratch_;      // four cells
-  CellMemory window_rows_;  // a row of costs, then the sums of window_height rows
+  CellMemory rows_;                   // three rows
+  CellMemory window_rows_;            // a row of costs, then the sums of window_height rows
+  std::vector<uint8_t> like_before_;  // CostRow::like_before
   std::vector<int> held_rows_;
   std::vector<int> held_sums_;
   std::vector<const uint16_t*> window_;

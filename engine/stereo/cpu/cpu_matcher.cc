@@ -18,7 +18,6 @@
 #include "engine/base/str.h"
 #include "engine/stereo/cell_memory.h"
 #include "engine/stereo/census.h"
-#include "engine/stereo/condition_pair.h"
 #include "engine/stereo/cpu/kernels.h"
 #include "engine/stereo/cpu/sweep.h"
 #include "engine/stereo/padded_picture.h"
@@ -92,32 +91,6 @@ class CpuMatcher final : public StereoMatcher {
  public:
   explicit CpuMatcher(const Kernels* kernels) : kernels_(kernels), refiner_(*kernels->filters) {}
 
-  Result<DisparityMap> Match(const GreyImage& left_seen, const GreyImage& right_seen,
-                             const SgmSettings& settings, int threads, BufferPool& pool) override {
-    VS_RETURN_IF_ERROR(ValidateSettings(settings));
-    VS_RETURN_IF_ERROR(ValidatePair(left_seen, right_seen));
-    const PicturePair pair = ConditionPair(left_seen, right_seen, settings, pool);
-    const GreyImage& left = pair.left;
-    const GreyImage& right = pair.right;
-    const int parts = std::clamp(threads, 1, 2 * (left.width() / kLeastColumns));
-    VS_RETURN_IF_ERROR(Prepare(left, right, settings, parts));
-    DisparityMap map =
-        MakeDisparityMap(left.width(), left.height(), DisparityOffset(settings), pool);
-    meeting_.Reset(parts);
-    team_.Run(parts, [&](int part) {
-      MakeFeatures(settings, part, ShareOf(left.height(), part, parts));
-      meeting_.Wait();
-      RunSweeps(settings.directions, part, parts);
-      meeting_.Wait();
-      const RowRange rows = ShareOf(left.height(), part, parts);
-      for (int y = rows.begin; y < rows.end; ++y) {
-        JudgeRow(settings, left, y, WinnersOf(y), RightIndexOf(y), &map);
-      }
-    });
-    refiner_.Refine(left, settings, parts, &team_, pool, &map);
-    return map;
-  }
-
   size_t WorkingBytes() const override {
     size_t bytes = left_features_.Bytes() + right_features_.Bytes() + sums_.Bytes() +
                    winners_.Bytes() + right_index_.Bytes();
@@ -126,6 +99,8 @@ class CpuMatcher final : public StereoMatcher {
   }
 
  private:
+  Result<DisparityMap> MatchConditioned(const PicturePair& pair, const SgmSettings& settings,
+                                        int threads, BufferPool& pool) override;
   Status Prepare(const GreyImage& left, const GreyImage& right, const SgmSettings& settings,
                  int parts);
   void MakeFeatures(const SgmSettings& settings, int part, RowRange rows);
@@ -160,6 +135,28 @@ class CpuMatcher final : public StereoMatcher {
   CellMemory right_index_;
   Refiner refiner_;
 };
+
+Result<DisparityMap> CpuMatcher::MatchConditioned(const PicturePair& pair,
+                                                  const SgmSettings& settings, int threads,
+                                                  BufferPool& pool) {
+  const GreyImage& left = pair.left;
+  const int parts = std::clamp(threads, 1, 2 * (left.width() / kLeastColumns));
+  VS_RETURN_IF_ERROR(Prepare(left, pair.right, settings, parts));
+  DisparityMap map = MakeDisparityMap(left.width(), left.height(), DisparityOffset(settings), pool);
+  meeting_.Reset(parts);
+  team_.Run(parts, [&](int part) {
+    const RowRange rows = ShareOf(left.height(), part, parts);
+    MakeFeatures(settings, part, rows);
+    meeting_.Wait();
+    RunSweeps(settings.directions, part, parts);
+    meeting_.Wait();
+    for (int y = rows.begin; y < rows.end; ++y) {
+      JudgeRow(settings, left, y, WinnersOf(y), RightIndexOf(y), *kernels_->filters, &map);
+    }
+  });
+  refiner_.Refine(left, settings, parts, &team_, pool, &map);
+  return map;
+}
 
 Status CpuMatcher::Prepare(const GreyImage& left, const GreyImage& right,
                            const SgmSettings& settings, int parts) {
@@ -234,7 +231,8 @@ void CpuMatcher::MakeFeatures(const SgmSettings& settings, int part, RowRange ro
   const auto width = static_cast<size_t>(plan.width);
   std::vector<uint8_t>& right = feature_rows_[part];
   for (int y = rows.begin; y < rows.end; ++y) {
-    FeatureRowOf(left_, settings, y, left_features_.Reserve(0) + y * plan.planes * width);
+    FeatureRowOf(left_, settings, y,
+                 left_features_.Reserve(0) + static_cast<size_t>(y) * plan.planes * width);
     FeatureRowOf(right_, settings, y, right.data());
     uint8_t* striped = right_features_.Reserve(0) +
                        static_cast<size_t>(y) * plan.planes * plan.stripes * plan.right_stride;

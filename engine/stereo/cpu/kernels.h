@@ -73,7 +73,7 @@ struct CostRow {
   int begin = 0;
   int end = 0;
   uint8_t* row = nullptr;
-  uint8_t* scratch = nullptr;  // four cells
+  const uint8_t* like_before = nullptr;  // see Kernels::likeness_row; columns [begin, end]
 };
 
 // The sums of `costs`, a row of cells before smoothing, over the window's width, for the columns
@@ -93,7 +93,7 @@ struct WindowRow {
   int end = 0;
   const uint16_t* const* sums = nullptr;  // window_height rows
   uint8_t* row = nullptr;
-  uint8_t* scratch = nullptr;  // four cells
+  const uint8_t* like_before = nullptr;
 };
 
 // One row, or a part of it, of a sweep over the picture that adds up to four directions at once:
@@ -107,6 +107,8 @@ struct SweepRow {
   const uint8_t* above = nullptr;  // cost rows y - 1, y, y + 1; the row itself at the border
   const uint8_t* here = nullptr;
   const uint8_t* below = nullptr;
+  const uint8_t* like_above = nullptr;  // see Kernels::likeness_row, by column
+  const uint8_t* like_below = nullptr;
   uint8_t* along = nullptr;   // L of the pixel before in this row: one cell, kept up to date
   uint8_t* across = nullptr;  // L of the row before: [x]
   uint8_t* diagonal[2] = {};  // L of the diagonals; a line stays in its place: width + height cells
@@ -155,6 +157,10 @@ struct Kernels {
   // multiple of `lanes`, and read as far.
   void (*penalty_row)(const PenaltySteps& steps, const uint8_t* grey, const uint8_t* from,
                       int count, uint8_t* p2);
+  // Where smoothing may mix pixels: 0xff where the grey values of two rows differ by at most
+  // `gate`, else 0. Writes and reads as far as penalty_row.
+  void (*likeness_row)(int gate, const uint8_t* grey, const uint8_t* from, int count,
+                       uint8_t* like);
   void (*cost_row)(const Plan& plan, CostKind kind, const CostRow& work);
   void (*window_sums)(const Plan& plan, const WindowSums& work);
   void (*window_row)(const Plan& plan, const WindowRow& work);

@@ -75,8 +75,18 @@ struct KernelSet {
     (mode == SweepMode::kStore ? kernels.store : kernels.finish)[directions - 1](plan, work);
   }
   static constexpr Kernels Make(const char* name) {
-    return {name,  kLanes, &Stripes, &MakeLayout, &ComputeCensusRow, &ComputePenaltyRow,
-            &Cost, &Sums,  &Window,  &Sweep,      &kFilterKernels};
+    return {name,
+            kLanes,
+            &Stripes,
+            &MakeLayout,
+            &ComputeCensusRow,
+            &ComputePenaltyRow,
+            &ComputeLikenessRow,
+            &Cost,
+            &Sums,
+            &Window,
+            &Sweep,
+            &kFilterKernels};
   }
 };
 

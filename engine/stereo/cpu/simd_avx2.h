@@ -9,6 +9,7 @@ namespace {
 // 32 bytes side by side on AVX2; simd_portable.h says what each name means.
 struct Simd {
   static constexpr int kLanes = 32;
+  static constexpr int kRegisters = 16;
   struct V {
     __m256i v;
   };
@@ -53,7 +54,11 @@ struct Simd {
     return {_mm256_blendv_epi8(yes.v, no.v, not_less)};
   }
 
-  static V MinBut(V a, V b, uint8_t lane) {
+  static V Choose(V mask, V yes, V no) { return {_mm256_blendv_epi8(no.v, yes.v, mask.v)}; }
+  using Exception = uint8_t;  // the lane
+  static constexpr Exception kNoException = 255;
+  static constexpr Exception Except(int lane) { return static_cast<Exception>(lane); }
+  static V MinBut(V a, V b, Exception lane) {
     const __m256i numbers =
         _mm256_setr_epi8(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20,
                          21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31);

@@ -9,6 +9,7 @@ namespace {
 // 64 bytes side by side on AVX-512 (BW, VBMI, BITALG); simd_portable.h says what each name means.
 struct Simd {
   static constexpr int kLanes = 64;
+  static constexpr int kRegisters = 32;
   struct V {
     __m512i v;
   };
@@ -38,9 +39,14 @@ struct Simd {
   static V IfLess(V a, V b, V yes, V no) {
     return {_mm512_mask_blend_epi8(_mm512_cmplt_epu8_mask(a.v, b.v), no.v, yes.v)};
   }
-  static V MinBut(V a, V b, uint8_t lane) {
-    const uint64_t excepted = static_cast<uint64_t>(lane < 64) << (lane & 63);
-    return {_mm512_mask_min_epu8(a.v, ~excepted, a.v, b.v)};
+  static V Choose(V mask, V yes, V no) {
+    return {_mm512_ternarylogic_epi32(mask.v, yes.v, no.v, 0xca)};
+  }
+  using Exception = uint64_t;  // the other lanes
+  static constexpr Exception kNoException = ~0ULL;
+  static constexpr Exception Except(int lane) { return ~(1ULL << lane); }
+  static V MinBut(V a, V b, Exception excepted) {
+    return {_mm512_mask_min_epu8(a.v, excepted, a.v, b.v)};
   }
 
   static V FromBelow(V a, uint8_t guard) {

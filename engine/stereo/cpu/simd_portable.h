@@ -10,6 +10,7 @@ namespace {
 // members.
 struct Simd {
   static constexpr int kLanes = 16;
+  static constexpr int kRegisters = 16;
   using V = uint8_t __attribute__((vector_size(16)));
   using Pairs = uint16_t __attribute__((vector_size(16)));
 
@@ -48,38 +49,45 @@ struct Simd {
   // Lane by lane `yes` or `no`.
   static V IfEqual(V a, V b, V yes, V no) { return a == b ? yes : no; }
   static V IfLess(V a, V b, V yes, V no) { return a < b ? yes : no; }
+  // `yes` where the mask is 0xff, `no` where it is 0.
+  static V Choose(V mask, V yes, V no) { return no ^ (mask & (yes ^ no)); }
 
-  // Min(a, b), but a in one lane (255: in none).
-  static V MinBut(V a, V b, uint8_t lane) {
+  // Min(a, b), but a in the excepted lane.
+  using Exception = uint8_t;
+  static constexpr Exception kNoException = 255;
+  static constexpr Exception Except(int lane) { return static_cast<Exception>(lane); }
+  static V MinBut(V a, V b, Exception lane) {
     const V numbers = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     return Min(a, b | static_cast<V>(numbers == Set(lane)));
   }
 
   // Each lane from the lane below (above) it; `guard` in the lane that has none.
   static V FromBelow(V a, uint8_t guard) {
-    const V places = {16, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14};
-    return __builtin_shuffle(a, Set(guard), places);
+    return __builtin_shufflevector(a, Set(guard), 16, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13,
+                                   14);
   }
   static V FromAbove(V a, uint8_t guard) {
-    const V places = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
-    return __builtin_shuffle(a, Set(guard), places);
+    return __builtin_shufflevector(a, Set(guard), 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15,
+                                   16);
   }
 
   // The least lane, in all lanes.
   static V LeastOfAll(V a) {
-    a = Min(a, __builtin_shuffle(a, V{8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7}));
-    a = Min(a, __builtin_shuffle(a, V{4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11}));
-    a = Min(a, __builtin_shuffle(a, V{2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13}));
-    return Min(a, __builtin_shuffle(a, V{1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14}));
+    a = Min(a, __builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7));
+    a = Min(a, __builtin_shufflevector(a, a, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11));
+    a = Min(a, __builtin_shufflevector(a, a, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13));
+    return Min(a,
+               __builtin_shufflevector(a, a, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14));
   }
   // Half of the lanes of two vectors as pairs of bytes, each a number of sixteen bits with the
   // first argument above the second (on a little-endian machine).
   static V PairLow(V high, V low) {
-    return __builtin_shuffle(low, high, V{0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23});
+    return __builtin_shufflevector(low, high, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7,
+                                   23);
   }
   static V PairHigh(V high, V low) {
-    return __builtin_shuffle(low, high,
-                             V{8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31});
+    return __builtin_shufflevector(low, high, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30,
+                                   15, 31);
   }
   static V MinPairs(V a, V b) {
     const Pairs x = reinterpret_cast<Pairs>(a);

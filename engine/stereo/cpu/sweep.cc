@@ -33,7 +33,8 @@ bool Sweep::Prepare(const SweepFrame* frame, int directions, bool backward, int 
     block.end = std::max(border(b), border(b + 1));
     block.begun = 0;
     block.done = 0;
-    block.p2.resize(PenaltyStride() * 4);
+    block.p2.resize(ByteStride() * 4);
+    block.like.resize(ByteStride() * 2);
     if (!block.costs.Prepare(frame->kernels, &plan, frame->kind, block.begin, block.end)) {
       return false;
     }
@@ -59,7 +60,8 @@ bool Sweep::Prepare(const SweepFrame* frame, int directions, bool backward, int 
 size_t Sweep::Bytes() const {
   size_t bytes = along_.Bytes() + across_.Bytes() + right_.Bytes() + diagonals_[0].Bytes() +
                  diagonals_[1].Bytes();
-  for (const auto& block : blocks_) bytes += block->costs.Bytes() + block->p2.size();
+  for (const auto& block : blocks_)
+    bytes += block->costs.Bytes() + block->p2.size() + block->like.size();
   return bytes;
 }
 
@@ -82,8 +84,26 @@ void Sweep::PenaltyRows(Block* block, int y) const {
   for (int d = 0; d < directions_; ++d) {
     frame_->kernels->penalty_row(frame_->penalties, grey + block->begin, from[d] + block->begin,
                                  block->end - block->begin,
-                                 block->p2.data() + d * PenaltyStride() + block->begin);
+                                 block->p2.data() + d * ByteStride() + block->begin);
   }
+}
+
+void Sweep::CostRows(Block* block, SweepRow* row) const {
+  const Plan& plan = frame_->plan;
+  const int y = row->y;
+  row->here = block->costs.Row(y);
+  if (plan.gate < 0) return;
+  // At the border the row is its own neighbour.
+  row->above = y > 0 ? block->costs.Row(y - 1) : row->here;
+  row->below = y + 1 < plan.height ? block->costs.Row(y + 1) : row->here;
+  const uint8_t* grey = plan.guide + y * plan.guide_stride + block->begin;
+  const auto like = [&](const uint8_t* other, uint8_t* out) {
+    frame_->kernels->likeness_row(plan.gate, grey, other, block->end - block->begin,
+                                  out + block->begin);
+    return out;
+  };
+  row->like_above = like(grey - plan.guide_stride, block->like.data());
+  row->like_below = like(grey + plan.guide_stride, block->like.data() + ByteStride());
 }
 
 void Sweep::OneRow(int number, int k, SweepMode mode) {
@@ -96,14 +116,10 @@ void Sweep::OneRow(int number, int k, SweepMode mode) {
   const auto row_bytes = static_cast<size_t>(plan.width) * plan.cell;
 
   SweepRow row{.y = y, .backward = backward_};
-  row.here = block.costs.Row(y);
-  if (plan.gate >= 0) {
-    row.above = y > 0 ? block.costs.Row(y - 1) : row.here;
-    row.below = y + 1 < plan.height ? block.costs.Row(y + 1) : row.here;
-  }
+  CostRows(&block, &row);
   PenaltyRows(&block, y);
   for (int d = 0; d < directions_; ++d) {
-    row.p2[d] = block.p2.data() + d * PenaltyStride();
+    row.p2[d] = block.p2.data() + d * ByteStride();
   }
   row.along = Ring(along_, k, static_cast<size_t>(plan.cell));
   row.across = across_.Reserve(0);

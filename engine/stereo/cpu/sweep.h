@@ -44,7 +44,8 @@ class Sweep {
     int begin = 0;  // columns
     int end = 0;
     CostSource costs;
-    std::vector<uint8_t> p2;
+    std::vector<uint8_t> p2;    // by direction
+    std::vector<uint8_t> like;  // above, below
     // Rows of which the first column, and all columns, are done.
     std::atomic<int> begun = 0;
     std::atomic<int> done = 0;
@@ -53,9 +54,11 @@ class Sweep {
   int ImageRow(int k) const { return backward_ ? frame_->plan.height - 1 - k : k; }
   // Rows that are being swept at once: each block is at most two rows ahead of the next.
   int RingRows() const { return 2 * used_blocks_ + 2; }
-  size_t PenaltyStride() const { return static_cast<size_t>(frame_->plan.width) + 64; }
+  // Of a row of bytes by column that a kernel writes.
+  size_t ByteStride() const { return static_cast<size_t>(frame_->plan.width) + 64; }
   uint8_t* Ring(CellMemory& memory, int k, size_t size) const;
   void PenaltyRows(Block* block, int y) const;
+  void CostRows(Block* block, SweepRow* row) const;
   void OneRow(int block, int k, SweepMode mode);
 
   const SweepFrame* frame_ = nullptr;

@@ -5,6 +5,7 @@
 #include "engine/stereo/cpu/cells_of.h"
 
 // NOLINTBEGIN(misc-definitions-in-headers): each file that includes this shall have its own.
+// NOLINTBEGIN(bugprone-implicit-widening-of-multiplication-result): places within a cell.
 namespace {
 
 // One step of a path: L of the pixel before becomes L of this one (path_cost.h).
@@ -25,6 +26,7 @@ VS_INLINE void Step(const Cell<kStripes>& cost, V p1, V p2, Cell<kStripes>* path
   for (int r = 0; r < kStripes; ++r) path->v[r] = Simd::Subtract(total.v[r], least);
 }
 
+// `sum` is what the directions before have added up.
 template <int kStripes>
 VS_INLINE void StepInMemory(const Cell<kStripes>& cost, V p1, V p2, uint8_t* path,
                             Cell<kStripes>* sum) {
@@ -35,19 +37,30 @@ VS_INLINE void StepInMemory(const Cell<kStripes>& cost, V p1, V p2, uint8_t* pat
   for (int r = 0; r < kStripes; ++r) sum->v[r] = Simd::AddSaturated(sum->v[r], cell.v[r]);
 }
 
-// By winner and stripe: the lane of the one among the winner and its two neighbours that lies in
-// this stripe; kNoLane if none does. Of at least three stripes each holds at most one.
-constexpr uint8_t kNoLane = 255;
+// Of at least three stripes each holds at most one of three indices in a row: by winner and stripe,
+// the lane of the one among the winner and its two neighbours that lies in this stripe.
 template <int kStripes>
 struct NeighbourLanes {
-  uint8_t of[256][kStripes] = {};
+  Simd::Exception of[256][kStripes] = {};
 
   constexpr NeighbourLanes() {
     for (int winner = 0; winner < 256; ++winner) {
-      for (int r = 0; r < kStripes; ++r) of[winner][r] = kNoLane;
+      for (int r = 0; r < kStripes; ++r) of[winner][r] = Simd::kNoException;
       for (int i = winner - 1; i <= winner + 1; ++i) {
-        if (i >= 0) of[winner][i % kStripes] = static_cast<uint8_t>(i / kStripes);
+        if (i >= 0 && i < kStripes * kLanes) of[winner][i % kStripes] = Simd::Except(i / kStripes);
       }
+    }
+  }
+};
+
+// Where an index lies in a cell, from index -1 to the one after the last; these two lie anywhere.
+template <int kStripes>
+struct Places {
+  uint8_t of[kStripes * kLanes + 2] = {};
+
+  constexpr Places() {
+    for (int i = 0; i < kStripes * kLanes; ++i) {
+      of[i + 1] = static_cast<uint8_t>(i % kStripes * kLanes + i / kStripes);
     }
   }
 };
@@ -73,29 +86,27 @@ VS_INLINE V LeastButNeighbours(const Layout<kStripes>& layout, int winner,
 
 // Selects the left winner of pixel x (selection.h).
 template <int kStripes>
-VS_INLINE void SelectLeft(const Plan& plan, const SweepRow& work, const Layout<kStripes>& layout,
-                          int x, const Cell<kStripes>& sum) {
-  // The least sum together with its index, and so the least index among equals.
-  V least = Simd::PairLow(sum.v[0], layout.index.v[0]);
-  for (int r = 0; r < kStripes; ++r) {
-    if (r > 0) least = Simd::MinPairs(least, Simd::PairLow(sum.v[r], layout.index.v[r]));
-    least = Simd::MinPairs(least, Simd::PairHigh(sum.v[r], layout.index.v[r]));
+VS_INLINE void SelectLeft(const SweepRow& work, const Layout<kStripes>& layout, int x,
+                          const Cell<kStripes>& sum) {
+  // The least sum together with its index, and so the least index among equals. First lane by lane.
+  V least = sum.v[0];
+  V least_index = layout.index.v[0];
+  for (int r = 1; r < kStripes; ++r) {
+    least_index = Simd::IfLess(sum.v[r], least, layout.index.v[r], least_index);
+    least = Simd::Min(least, sum.v[r]);
   }
-  const int pair = Simd::LeastPair(least);
+  const int pair = Simd::LeastPair(
+      Simd::MinPairs(Simd::PairLow(least, least_index), Simd::PairHigh(least, least_index)));
   const int index = pair & 0xff;
   const V second = LeastButNeighbours(layout, index, sum);
   alignas(64) uint8_t sums[kStripes * kLanes];
   sum.Store(sums);
-  const auto at = [&](int i) {
-    const auto place = static_cast<unsigned>(i);
-    return sums[(place % kStripes) * kLanes + place / kStripes];
-  };
-  const int last = plan.num_disparities - 1;
+  static constexpr Places<kStripes> kPlaces;
   work.winners.index[x] = static_cast<uint8_t>(index);
   work.winners.best[x] = static_cast<uint8_t>(pair >> 8);
   work.winners.second[x] = Simd::First(Simd::LeastOfAll(second));
-  work.winners.before[x] = at(index > 0 ? index - 1 : 0);
-  work.winners.after[x] = at(index < last ? index + 1 : last);
+  work.winners.before[x] = sums[kPlaces.of[index]];
+  work.winners.after[x] = sums[kPlaces.of[index + 2]];
 }
 
 // The winners of the right view while a row is swept: the least sum and its index of those right
@@ -179,6 +190,14 @@ class RightWinners {
   Cell<kStripes> index_;
 };
 
+// `yes` if the mask is 0xff, `no` if it is 0; without a branch that nobody could predict.
+VS_INLINE const uint8_t* Either(uint8_t mask, const uint8_t* yes, const uint8_t* no) {
+  return no + (static_cast<int8_t>(mask) & (yes - no));
+}
+
+// How many pixels ahead stored sums are fetched.
+constexpr int kPrefetch = 10;
+
 template <int kStripes, int kDirections, SweepMode kMode>
 void SweepPixels(const Plan& shared_plan, const SweepRow& shared_work) {
   constexpr int kCell = kStripes * kLanes;
@@ -187,9 +206,6 @@ void SweepPixels(const Plan& shared_plan, const SweepRow& shared_work) {
   const SweepRow work = shared_work;
   const Layout<kStripes> layout(plan);
   const V p1 = Simd::Set(plan.p1);
-  const uint8_t* grey = plan.guide + static_cast<size_t>(work.y) * plan.guide_stride;
-  const uint8_t* grey_above = work.y > 0 ? grey - plan.guide_stride : grey;
-  const uint8_t* grey_below = work.y + 1 < plan.height ? grey + plan.guide_stride : grey;
   const int step = work.backward ? -1 : 1;
   const int first = work.backward ? work.end - 1 : work.begin;
   const int k = work.backward ? plan.height - 1 - work.y : work.y;
@@ -202,10 +218,8 @@ void SweepPixels(const Plan& shared_plan, const SweepRow& shared_work) {
     Cell<kStripes> cost;
     cost.Load(work.here + at);
     if (plan.gate >= 0) {
-      const bool like_above = Distance(grey[x], grey_above[x]) <= plan.gate;
-      const bool like_below = Distance(grey[x], grey_below[x]) <= plan.gate;
-      const uint8_t* above = (like_above ? work.above : work.here) + at;
-      const uint8_t* below = (like_below ? work.below : work.here) + at;
+      const uint8_t* above = Either(work.like_above[x], work.above, work.here) + at;
+      const uint8_t* below = Either(work.like_below[x], work.below, work.here) + at;
       for (int r = 0; r < kStripes; ++r) {
         const V sides =
             Simd::Average(Simd::Load(above + r * kLanes), Simd::Load(below + r * kLanes));
@@ -232,11 +246,16 @@ void SweepPixels(const Plan& shared_plan, const SweepRow& shared_work) {
     } else {
       if constexpr (kMode == SweepMode::kFinish) {
         for (int r = 0; r < kStripes; ++r) {
-          sum.v[r] = Simd::AddSaturated(sum.v[r], Simd::Load(work.sums + at + r * kLanes));
+          const uint8_t* stored = work.sums + at + r * kLanes;
+          // They come from far away; the processor does not look ahead enough by itself.
+          __builtin_prefetch(stored + step * kPrefetch * kCell);
+          sum.v[r] = Simd::AddSaturated(sum.v[r], Simd::Load(stored));
         }
       }
-      for (int r = 0; r < kStripes; ++r) sum.v[r] = Simd::Or(sum.v[r], layout.beyond.v[r]);
-      SelectLeft(plan, work, layout, x, sum);
+      if (!layout.full) {
+        for (int r = 0; r < kStripes; ++r) sum.v[r] = Simd::Or(sum.v[r], layout.beyond.v[r]);
+      }
+      SelectLeft(work, layout, x, sum);
       right.Offer(layout, x, sum);
     }
   }
@@ -246,4 +265,5 @@ void SweepPixels(const Plan& shared_plan, const SweepRow& shared_work) {
 }
 
 }  // namespace
+// NOLINTEND(bugprone-implicit-widening-of-multiplication-result)
 // NOLINTEND(misc-definitions-in-headers)

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
-#include "engine/stereo/sub_pixel.h"
 #include "tests/engine/stereo/pictures.h"
 
 namespace vs {
@@ -13,24 +13,80 @@ namespace {
 
 using testing::ElementsAre;
 
+// What the row kernel makes of one winner, in all places of a row.
+struct Measured {
+  int sixteenths;
+  int confidence;
+};
+Measured MeasureOne(SubPixel method, uint8_t before, uint8_t best, uint8_t after, uint8_t second) {
+  constexpr int kWidth = 37;
+  std::vector<uint8_t> memory(size_t{kWidth} * WinnerRow::kPlanes);
+  const WinnerRow winners = WinnerRow::In(memory.data(), kWidth);
+  std::fill_n(winners.index, kWidth, uint8_t{2});
+  std::fill_n(winners.best, kWidth, best);
+  std::fill_n(winners.second, kWidth, second);
+  std::fill_n(winners.before, kWidth, before);
+  std::fill_n(winners.after, kWidth, after);
+  std::vector<uint16_t> disparity(kWidth);
+  std::vector<uint8_t> confidence(kWidth);
+  PlainFilterKernels().measure({.winners = winners,
+                                .width = kWidth,
+                                .sub_pixel = method,
+                                .first_stored = 160,
+                                .last_index = 4,
+                                .disparity = disparity.data(),
+                                .confidence = confidence.data()});
+  EXPECT_THAT(disparity, testing::Each(disparity[0]));
+  EXPECT_THAT(confidence, testing::Each(confidence[0]));
+  return {disparity[0] - 160 - 2 * 16, confidence[0]};
+}
+int Sixteenths(SubPixel method, uint8_t before, uint8_t best, uint8_t after) {
+  return MeasureOne(method, before, best, after, 255).sixteenths;
+}
+
 TEST(SubPixel, EquiangularAndParabolaFindTheMinimum) {
   // Costs 10, 4, 6: equiangular 8 * 4 / 6 = 5.33, parabola 8 * 4 / 8 = 4.
-  EXPECT_EQ(SubPixelSixteenths(SubPixel::kEquiangular, 10, 4, 6), 5);
-  EXPECT_EQ(SubPixelSixteenths(SubPixel::kParabola, 10, 4, 6), 4);
-  EXPECT_EQ(SubPixelSixteenths(SubPixel::kEquiangular, 6, 4, 10), -5);
-  EXPECT_EQ(SubPixelSixteenths(SubPixel::kOff, 10, 4, 6), 0);
+  EXPECT_EQ(Sixteenths(SubPixel::kEquiangular, 10, 4, 6), 5);
+  EXPECT_EQ(Sixteenths(SubPixel::kParabola, 10, 4, 6), 4);
+  EXPECT_EQ(Sixteenths(SubPixel::kEquiangular, 6, 4, 10), -5);
+  EXPECT_EQ(Sixteenths(SubPixel::kOff, 10, 4, 6), 0);
 }
 
 TEST(SubPixel, RoundsHalvesUpwards) {
   // 8 * 5 / 16 = 2.5 and 8 * -5 / 16 = -2.5.
-  EXPECT_EQ(SubPixelSixteenths(SubPixel::kEquiangular, 16, 0, 11), 3);
-  EXPECT_EQ(SubPixelSixteenths(SubPixel::kEquiangular, 11, 0, 16), -2);
+  EXPECT_EQ(Sixteenths(SubPixel::kEquiangular, 16, 0, 11), 3);
+  EXPECT_EQ(Sixteenths(SubPixel::kEquiangular, 11, 0, 16), -2);
 }
 
 TEST(SubPixel, StaysWithinHalfAPixel) {
-  EXPECT_EQ(SubPixelSixteenths(SubPixel::kEquiangular, 255, 0, 0), 8);
-  EXPECT_EQ(SubPixelSixteenths(SubPixel::kEquiangular, 0, 0, 255), -8);
-  EXPECT_EQ(SubPixelSixteenths(SubPixel::kParabola, 7, 7, 7), 0);
+  EXPECT_EQ(Sixteenths(SubPixel::kEquiangular, 255, 0, 0), 8);
+  EXPECT_EQ(Sixteenths(SubPixel::kEquiangular, 0, 0, 255), -8);
+  EXPECT_EQ(Sixteenths(SubPixel::kParabola, 7, 7, 7), 0);
+}
+
+TEST(SubPixel, EqualsTheDivisionOfIntegers) {
+  for (int higher = 1; higher < 256; higher += 2) {
+    for (int lower = 0; lower <= higher; ++lower) {
+      const int expected = (16 * (higher - lower) + 17 * higher) / (2 * higher) - 8;
+      ASSERT_EQ(Sixteenths(SubPixel::kEquiangular, static_cast<uint8_t>(higher), 0,
+                           static_cast<uint8_t>(lower)),
+                expected)
+          << higher << " " << lower;
+    }
+  }
+}
+
+TEST(Confidence, EqualsTheDivisionOfIntegers) {
+  for (int second = 0; second < 256; second += 3) {
+    for (int best = 0; best <= second; ++best) {
+      const int expected = second == 0 ? 0 : 255 * (second - best) / second;
+      ASSERT_EQ(MeasureOne(SubPixel::kOff, 255, static_cast<uint8_t>(best), 255,
+                           static_cast<uint8_t>(second))
+                    .confidence,
+                expected)
+          << second << " " << best;
+    }
+  }
 }
 
 // Runs the selection on a single row of 16 or more pixels.
@@ -40,7 +96,7 @@ class SelectionTest : public testing::Test {
     settings_.num_disparities = 4;
     settings_.left_right_check = false;
     settings_.sub_pixel = SubPixel::kOff;
-    sums_.assign(kWidth * 4, 100);
+    sums_.assign(size_t{kWidth} * 4, 100);
     left_.Fill(50);
     for (int x = 0; x < kWidth; x += 2) left_.Row(0)[x] = 150;  // texture
   }
