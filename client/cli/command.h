@@ -13,6 +13,7 @@ namespace v1 = ::visionserver::v1;
 
 using client::Result;
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a declaration cannot stand in parentheses.
 // Leaves a command with the error of `expression` (a Result), if it has one.
 #define VS_CLI_TRY(target, expression) VS_CLI_TRY_NAMED_(VS_CLI_NAME_(__LINE__), target, expression)
 #define VS_CLI_NAME_(line) VS_CLI_JOIN_(vs_result_, line)
@@ -21,6 +22,7 @@ using client::Result;
   auto result = (expression);                               \
   if (!(result)) return ::tl::unexpected((result).error()); \
   target = std::move(*result)
+// NOLINTEND(bugprone-macro-parentheses)
 
 // The answer of a method that no member of Client stands for.
 template <class Stub, class Request, class Response>

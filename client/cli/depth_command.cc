@@ -159,8 +159,7 @@ Result<void> Depth(Session& session, const DepthArguments& arguments) {
       latency_ms = static_cast<double>(NowNs() + clock->offset_ns - frame->capture_ns) / 1e6;
     }
     if (writes) {
-      const auto written =
-          WriteDepthFiles(*frame, name, latency_ms.value_or(-1), count, *arguments.out);
+      auto written = WriteDepthFiles(*frame, name, latency_ms.value_or(-1), count, *arguments.out);
       if (!written) return written;
     }
     report.Frame(*frame, latency_ms);

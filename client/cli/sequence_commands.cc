@@ -61,14 +61,14 @@ Result<void> Validate(Session& session, const std::string& id, const std::string
     return client::Failure(client::Code::kInvalidArgument,
                            "name one stored sequence, or a file with --file");
   }
-  if (const auto checked = CheckIsNoFile(id); !checked) return checked;
+  if (auto checked = CheckIsNoFile(id); !checked) return checked;
   const std::string name = file.empty() ? id : file;
   VS_CLI_TRY(const v1::ValidateSequenceRequest request, Subject(id, file));
   VS_CLI_TRY(const v1::ValidateSequenceResponse response,
              Ask(session, &Stub::ValidateSequence, request));
   if (response.faults().empty() || session.options().json) {
-    const auto done = Show(session, Result<v1::ValidateSequenceResponse>(response),
-                           [&](const auto&) { PrintLine(name + " has no faults."); });
+    auto done = Show(session, Result<v1::ValidateSequenceResponse>(response),
+                     [&](const auto&) { PrintLine(name + " has no faults."); });
     if (response.faults().empty()) return done;
   }
   client::Error error{.code = client::Code::kInvalidArgument,
@@ -127,7 +127,7 @@ void PrintShortState(const v1::SequenceState& state) {
 
 Result<void> Create(Session& session, const std::string& id, const std::string& file,
                     bool autostart, bool allow_faults) {
-  if (const auto checked = CheckIsNoFile(id); !checked) return checked;
+  if (auto checked = CheckIsNoFile(id); !checked) return checked;
   if (file.empty() && ::isatty(STDIN_FILENO) != 0) {
     return client::Failure(client::Code::kInvalidArgument,
                            "name the sequence's JSON with --file, or pipe it in");

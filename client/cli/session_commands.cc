@@ -36,10 +36,10 @@ Result<void> Login(Session& session, const LoginArguments& arguments) {
       std::fputs("The password was for one time only; choose one of your own.\n", stderr);
     }
     VS_CLI_TRY(const std::string chosen, NewPassword(*arguments.new_password_stdin));
-    if (const auto done = client->ChangePassword(password, chosen); !done) return done;
+    if (auto done = client->ChangePassword(password, chosen); !done) return done;
     login.set_must_change_password(false);
   }
-  if (const auto done = session.Remember(user, login.token()); !done) return done;
+  if (auto done = session.Remember(user, login.token()); !done) return done;
   login.clear_token();  // it is stored; a log of this output is no place for it
   return Show(session, Result<v1::LoginResponse>(login), [&](const v1::LoginResponse& response) {
     PrintLine("Logged in as " + user + " (" + RoleWord(response.role()) + ") until " +
@@ -52,7 +52,7 @@ Result<void> ChangePassword(Session& session, bool from_stdin) {
   VS_CLI_TRY(const std::string old,
              from_stdin ? ReadPasswordLine() : AskPassword("Present password", "--password-stdin"));
   VS_CLI_TRY(const std::string chosen, NewPassword(from_stdin));
-  if (const auto done = client->ChangePassword(old, chosen); !done) return done;
+  if (auto done = client->ChangePassword(old, chosen); !done) return done;
   if (!session.options().json) PrintLine("Password changed; your other sessions have ended.");
   return {};
 }
@@ -67,9 +67,9 @@ Result<void> WhoAmI(Session& session) {
 
 Result<void> Logout(Session& session) {
   VS_CLI_TRY(client::Client * client, session.Connect());
-  const Result<void> done = client->Logout();
+  Result<void> done = client->Logout();
   if (!done && done.error().code != client::Code::kUnauthenticated) return done;
-  if (const auto forgotten = session.Forget(); !forgotten) return forgotten;
+  if (auto forgotten = session.Forget(); !forgotten) return forgotten;
   if (!session.options().json) PrintLine("Logged out.");
   return {};
 }

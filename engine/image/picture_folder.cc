@@ -67,7 +67,7 @@ Status PictureFolder::Write(const std::string& name, const std::vector<uint8_t>&
   VS_RETURN_IF_ERROR(MakeRoom(bytes, limits));
   const fs::path draft = folder_ / (name + ".part");
   std::error_code error;
-  if (const Status status = WriteWhole(draft, content); !status.ok()) {
+  if (Status status = WriteWhole(draft, content); !status.ok()) {
     fs::remove(draft, error);
     return status;
   }

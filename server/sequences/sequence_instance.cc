@@ -24,7 +24,7 @@ Status SequenceInstance::Start(const std::function<Result<StoredSequence>()>& lo
   if (Runs(run())) return Status();
   SetTransition(Activity::kStarting);
   const Result<StoredSequence> stored = load();
-  const Status started = stored.has_value() ? Launch(*stored) : stored.error();
+  Status started = stored.has_value() ? Launch(*stored) : stored.error();
   SetTransition(Activity::kStopped);
   return started;
 }

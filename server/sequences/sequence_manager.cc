@@ -23,7 +23,7 @@ SequenceManager::~SequenceManager() { StopAll(); }
 
 Status SequenceManager::Start(const std::string& id) {
   VS_ASSIGN_OR_RETURN(const std::shared_ptr<SequenceInstance> instance, Instance(id));
-  const Status started = instance->Start([&]() -> Result<StoredSequence> {
+  Status started = instance->Start([&]() -> Result<StoredSequence> {
     MutexLock editing(editing_);
     return store_.Get(id);
   });

@@ -126,7 +126,7 @@ Result<StoredSequence> SequenceStore::Update(const std::string& id, const std::s
 Status SequenceStore::Delete(const std::string& id, const std::string& etag) {
   MutexLock writing(writing_);
   if (const auto stored = GetIfUnchanged(id, etag); !stored.has_value()) return stored.error();
-  const Status removed = RemoveFile(FileOf(id));
+  Status removed = RemoveFile(FileOf(id));
   // Gone already is as good.
   if (!removed.ok() && removed.code() != StatusCode::kNotFound) return removed;
   MutexLock lock(mutex_);

@@ -95,6 +95,7 @@ std::vector<CameraEntry> CameraService::Cameras() {
     for (CameraEntry* entry : used) entry->used_by.push_back(status.id);
   }
   std::vector<CameraEntry> entries;
+  entries.reserve(known.size());
   for (Known& one : known) entries.push_back(std::move(one.entry));
   std::sort(entries.begin(), entries.end(),
             [](const CameraEntry& a, const CameraEntry& b) { return a.id < b.id; });

@@ -17,7 +17,7 @@ struct Encoding {
   bool reasons = false;
   int jpeg_quality = 0;  // 0 unless the codec is JPEG
 
-  auto operator<=>(const Encoding&) const = default;
+  auto operator<=>(const Encoding&) const = default;  // NOLINT(modernize-use-nullptr): none here
 };
 
 // What clients see of a topic whose values have this port type; UNSPECIFIED: cannot be sent.

@@ -143,11 +143,10 @@ void StreamChannel::BeginPacking(const Encoding& encoding, Packed* packed) {
 }
 
 void StreamChannel::PackHere(const Encoding& encoding, Packed* packed) {
-  // Under the lock, which the analysis does not see in a lambda.
+  const std::shared_ptr<const Sample> sample = newest_;
+  const uint64_t seq = newest_seq_;
   encoders_.RunHere(
-      [packed, &encoding, &sample = newest_, seq = newest_seq_](FrameEncoder& encoder) {
-        packed->item = encoder.Encode(sample, seq, encoding);
-      });
+      [&](FrameEncoder& encoder) { packed->item = encoder.Encode(sample, seq, encoding); });
 }
 
 void StreamChannel::FinishPacking(const Encoding& encoding,

@@ -185,7 +185,7 @@ class Bench {
     for (const auto& [what, work] : works) {
       const std::string name = Str("648x482_", what, "_t1");
       if (!Wanted(name)) continue;
-      TakeTurns(name, {{what, "", [&] { return MillisecondsOf(work); }}}, options_);
+      TakeTurns(name, {{what, "", [&run = work] { return MillisecondsOf(run); }}}, options_);
     }
   }
 

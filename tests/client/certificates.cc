@@ -22,8 +22,7 @@ std::string OpenSsl(std::vector<std::string> arguments) {
 
 CertificatePair MakeCertificate(const std::filesystem::path& folder, const std::string& name,
                                 const std::string& names, const CertificatePair* issuer) {
-  const CertificatePair made{.certificate = folder / (name + ".crt"),
-                             .key = folder / (name + ".key")};
+  CertificatePair made{.certificate = folder / (name + ".crt"), .key = folder / (name + ".key")};
   std::vector<std::string> arguments = {"req",
                                         "-x509",
                                         "-newkey",

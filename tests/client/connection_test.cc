@@ -32,7 +32,7 @@ class DeafPort {
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     socklen_t size = sizeof(address);
-    ::bind(socket_.fd(), reinterpret_cast<sockaddr*>(&address), size);
+    EXPECT_EQ(::bind(socket_.fd(), reinterpret_cast<sockaddr*>(&address), size), 0);
     if (listens) ::listen(socket_.fd(), 16);
     ::getsockname(socket_.fd(), reinterpret_cast<sockaddr*>(&address), &size);
     address_ = "127.0.0.1:" + std::to_string(ntohs(address.sin_port));

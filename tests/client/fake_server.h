@@ -55,7 +55,6 @@ class FakeStreams final : public v1::StreamService::Service {
   std::string open_stream_;    // id; empty when there is none
   uint64_t sent_ = 0;          // items, of all streams
   uint64_t acknowledged_ = 0;  // newest of the stream that is open
-  uint32_t subscribed_window_ = 0;
   std::string last_credential_;
 };
 

@@ -49,6 +49,7 @@ std::vector<DeclaredMethod> DeclaredMethods() {
 
 std::vector<std::string> Names(const std::vector<DeclaredMethod>& methods) {
   std::vector<std::string> names;
+  names.reserve(methods.size());
   for (const DeclaredMethod& method : methods) names.push_back(method.name);
   return names;
 }

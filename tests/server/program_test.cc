@@ -52,7 +52,7 @@ class ProgramTest : public ::testing::Test {
     return *test::RunProcess(Command(more));
   }
   // Up and running; its port is in port_.
-  std::unique_ptr<ChildProcess> Start(std::vector<std::string> command) {
+  std::unique_ptr<ChildProcess> Start(const std::vector<std::string>& command) {
     auto server = *ChildProcess::Start(command);
     const auto line = server->WaitForLine("listens on");
     EXPECT_TRUE(line.has_value()) << server->ErrorOutput();
@@ -305,6 +305,7 @@ TEST_F(ProgramTest, ServesOthersAfterAFloodOfIdleConnections) {
   ASSERT_TRUE(CallRaw(client, kInfo, "").status.ok());
   {
     std::vector<RawSocket> flood;
+    flood.reserve(150);
     for (int i = 0; i < 150; ++i) flood.emplace_back(port_);
     // Who was there before goes on being served.
     EXPECT_TRUE(CallRaw(client, kInfo, "").status.ok());

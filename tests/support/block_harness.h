@@ -61,7 +61,7 @@ class BlockHarness {
     ++frame.number;
     block_->SetFrame(&frame);
     for (const auto& [port, value] : inputs_) port->Bind(value);
-    const Status status = block_->Run();
+    Status status = block_->Run();
     for (const auto& [port, value] : inputs_) port->Bind(Value());
     for (PortBase* output : block_->outputs()) outputs_[output->info().name] = output->Release();
     return status;

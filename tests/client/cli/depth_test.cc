@@ -107,6 +107,7 @@ TEST_F(VisionctlDepth, LeavesResultsThatAreFollowedAskedForAndExported) {
   EXPECT_EQ("sim", json::parse(line).at("job_id"));
 
   EXPECT_THAT(Succeed({"results", "query",
+                       // NOLINTNEXTLINE(bugprone-suspicious-missing-comma): one long statement.
                        "SELECT number, job_id FROM result WHERE job_id = ?1 ORDER BY number "
                        "LIMIT 1",
                        "--arg", "sim"}),

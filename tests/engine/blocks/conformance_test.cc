@@ -111,7 +111,7 @@ class EveryBlock : public ::testing::TestWithParam<std::string> {
   int RunOnSyntheticValues(BlockHarness* harness, bool with_optional, const std::string& any_type);
 
   test::TempFolder folder_;
-  const OneRig rigs_;
+  const OneRig rigs_{};
   TopicHub topics_;
   ForgetfulSink sink_;
 };

@@ -23,7 +23,7 @@ std::string Verdict(const std::string& checks, const std::string& mode, int64_t 
   EXPECT_TRUE(block.Start().ok());
   EXPECT_TRUE(block.Run().ok());
   const bool pass = *block.Output<bool>("pass");
-  const std::string verdict = *block.Output<std::string>("result_class");
+  std::string verdict = *block.Output<std::string>("result_class");
   EXPECT_EQ(pass, verdict == "pass");
   return verdict;
 }

@@ -17,8 +17,9 @@ namespace {
 
 using testing::ElementsAre;
 
-std::vector<int> RemapRow(BufferPool& pool, std::vector<uint8_t> in_row,
-                          std::vector<RemapTable::Source> sources, Interpolation interpolation) {
+std::vector<int> RemapRow(BufferPool& pool, const std::vector<uint8_t>& in_row,
+                          const std::vector<RemapTable::Source>& sources,
+                          Interpolation interpolation) {
   GreyImage in(pool, static_cast<int>(in_row.size()), 4);
   for (int y = 0; y < 4; ++y) std::copy(in_row.begin(), in_row.end(), in.Row(y));
   const RemapTable table{

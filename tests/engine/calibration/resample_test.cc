@@ -28,6 +28,7 @@ class ResampleTest : public testing::Test {
     }
     const GreyImage resampled = Resample(image, 1, height, pool_);
     std::vector<int> column;
+    column.reserve(static_cast<size_t>(height));
     for (int y = 0; y < height; ++y) column.push_back(resampled.Row(y)[0]);
     return column;
   }

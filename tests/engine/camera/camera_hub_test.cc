@@ -154,6 +154,7 @@ TEST(CameraHub, StandsUsersThatComeAndGoWhilePicturesFlow) {
   });
   std::vector<std::thread> users;
   std::atomic<int> served = 0;
+  users.reserve(4);
   for (int i = 0; i < 4; ++i) {
     users.emplace_back([&] {
       for (int j = 0; j < 100; ++j) {

@@ -19,7 +19,7 @@ TEST(ClockMapper, TakesTheSmallestDelayAsTheOffset) {
   mapper.Add(100, 100 + kSecond + 30 * kMs);
   mapper.Add(200, 200 + kSecond + 2 * kMs);
   mapper.Add(300, 300 + kSecond + 50 * kMs);
-  EXPECT_NEAR(mapper.HostNs(1000), 1000 + kSecond + 2 * kMs, kMs / 100);
+  EXPECT_NEAR(mapper.HostNs(1000), 1000 + kSecond + 2 * kMs, static_cast<double>(kMs) / 100);
 }
 
 TEST(ClockMapper, StartsAnewAfterAReset) {

@@ -107,6 +107,7 @@ TEST(DeviceCalls, RefusesAtOnceWhileTheDeviceIsStuckInACall) {
   // The first caller gives up after a second; by then the device is known to hang.
   victim.join();
   std::vector<Status> answers;
+  answers.reserve(1000);
   for (int i = 0; i < 1000; ++i) answers.push_back(calls.Call<int>(Read()).error());
   release = true;
   for (const Status& answer : answers) EXPECT_EQ(answer.code(), StatusCode::kUnavailable);
@@ -116,6 +117,7 @@ TEST(DeviceCalls, BoundsTheQueue) {
   Calls calls;
   std::vector<std::thread> callers;
   std::atomic<int> exhausted = 0;
+  callers.reserve(40);
   for (int i = 0; i < 40; ++i) {
     callers.emplace_back([&] {
       const auto result = calls.Call<int>(Read());

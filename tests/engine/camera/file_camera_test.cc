@@ -42,6 +42,7 @@ std::vector<FramePtr> PlayAll(CameraSource& camera) {
 
 std::vector<int> GreyValues(const std::vector<FramePtr>& frames) {
   std::vector<int> values;
+  values.reserve(frames.size());
   for (const FramePtr& frame : frames) values.push_back(frame->image.Row(0)[0]);
   return values;
 }

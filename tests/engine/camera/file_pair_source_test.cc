@@ -39,6 +39,7 @@ std::vector<StereoFramePtr> PlayAll(StereoSource& source) {
 
 std::vector<std::pair<int, int>> GreyValues(const std::vector<StereoFramePtr>& pairs) {
   std::vector<std::pair<int, int>> values;
+  values.reserve(pairs.size());
   for (const auto& pair : pairs) {
     values.emplace_back(pair->left->image.Row(0)[0], pair->right->image.Row(0)[0]);
   }

@@ -63,7 +63,7 @@ class SchedulerTest : public ::testing::Test {
     return WaitUntil([&] { return run.Stats().frames >= frames; });
   }
 
-  const SystemClock clock_;
+  const SystemClock clock_{};
   std::unique_ptr<Scheduler> scheduler_;
 };
 

@@ -49,6 +49,7 @@ TEST(TaskQueue, WakesWaitingWorkersForTasksAndForTheEnd) {
   TaskQueue queue;
   std::atomic<int> taken = 0;
   std::vector<std::thread> workers;
+  workers.reserve(3);
   for (int i = 0; i < 3; ++i) {
     workers.emplace_back([&] {
       Task task;

@@ -31,7 +31,7 @@ TEST(BufferPool, KeepsLittleOfSizesThatComeNoMore) {
   for (size_t pages = 1; pages <= 100; ++pages) (void)pool.Acquire(pages * kPageBytes);
   EXPECT_EQ(pool.SlabsMade(), 100u);
   // 84 .. 100 pages: the new slab and the 16 before it.
-  EXPECT_EQ(pool.BytesHeld(), 17 * 92 * kPageBytes);
+  EXPECT_EQ(pool.BytesHeld(), 17u * 92 * kPageBytes);
 }
 
 TEST(BufferPool, MakesNothingNewWhileTheSameFewSizesComeAgain) {
@@ -71,6 +71,7 @@ TEST(BufferPool, BuffersOutliveThePool) {
 TEST(BufferPool, ServesManyThreads) {
   BufferPool pool;
   std::vector<std::thread> threads;
+  threads.reserve(4);
   for (int t = 0; t < 4; ++t) {
     threads.emplace_back([&pool, t] {
       for (int i = 0; i < 500; ++i) {

@@ -43,6 +43,7 @@ TEST(ErrorDetails, ReasonIsTheCodeUnlessThereIsABetterOne) {
 
 TEST(ErrorDetails, LeavesOutWhatAClientCouldNotReceive) {
   std::vector<Fault> faults;
+  faults.reserve(5000);
   for (int i = 0; i < 5000; ++i) faults.push_back({Str("block", i), "no such block type"});
   const WireError error =
       ToWireError(Status(StatusCode::kInvalidArgument, std::string(100'000, 'x'), faults));

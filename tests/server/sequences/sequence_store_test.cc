@@ -140,6 +140,7 @@ TEST_F(SequenceStoreTest, NoUpdateIsLostAmongManyWriters) {
   (void)store->Create(Spec("gap"), false, "anna");
   std::atomic<int> accepted = 0;
   std::vector<std::thread> writers;
+  writers.reserve(4);
   for (int i = 0; i < 4; ++i) {
     writers.emplace_back([&] {
       for (int n = 0; n < 25;) {

@@ -36,7 +36,7 @@ TEST_F(SqliteTest, BoundValuesComeBackUnchanged) {
   ASSERT_TRUE(store.has_value()) << store.error().ToString();
   auto insert = store->Prepare("INSERT INTO part VALUES (?, ?)");
   ASSERT_TRUE(insert.has_value());
-  const std::string awkward("Robert'); DROP TABLE part;--\0x", 31);
+  const std::string awkward("Robert'); DROP TABLE part;--\0x", 30);
   insert->Bind(1, int64_t{1});
   insert->Bind(2, awkward);
   ASSERT_TRUE(insert->Run().ok());

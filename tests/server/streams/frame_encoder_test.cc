@@ -111,7 +111,7 @@ TEST_F(FrameEncoderTest, DepthIsExactWhenRawAndWithinHalfAStepOtherwise) {
 
   const pb::StreamItem raw = EncodeAs({.codec = pb::CODEC_RAW}, Shared(map));
   ASSERT_EQ(sizeof depth, raw.payload().size());
-  EXPECT_EQ(0, std::memcmp(depth, raw.payload().data(), sizeof depth));
+  EXPECT_EQ(std::string_view(reinterpret_cast<const char*>(depth), sizeof depth), raw.payload());
 
   const pb::StreamItem rvl = EncodeAs({.codec = pb::CODEC_RVL}, Shared(map));
   EXPECT_DOUBLE_EQ(1e-4, rvl.header().value_scale());
@@ -154,7 +154,7 @@ TEST_F(FrameEncoderTest, PicturesTravelAsJpegOrRaw) {
   const pb::StreamItem jpeg =
       EncodeAs({.codec = pb::CODEC_JPEG, .jpeg_quality = 90}, Shared(image));
   tjhandle reader = tjInitDecompress();
-  std::vector<unsigned char> pixels(32 * 16 * 3);
+  std::vector<unsigned char> pixels(size_t{32} * 16 * 3);
   ASSERT_EQ(0, tjDecompress2(reader, reinterpret_cast<const unsigned char*>(jpeg.payload().data()),
                              jpeg.payload().size(), pixels.data(), 32, 0, 16, TJPF_RGB, 0));
   tjDestroy(reader);

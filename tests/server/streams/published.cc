@@ -59,7 +59,7 @@ pb::StreamItem Parse(const WireMessage& message) {
 }
 
 std::vector<uint16_t> UnpackDisparity(const pb::StreamItem& item) {
-  std::vector<uint16_t> pixels(item.header().width() * item.header().height());
+  std::vector<uint16_t> pixels(size_t{item.header().width()} * item.header().height());
   const auto* payload = reinterpret_cast<const uint8_t*>(item.payload().data());
   std::vector<uint8_t> packed(payload, payload + item.payload().size());
   if (item.header().codec() == pb::CODEC_RAW) {

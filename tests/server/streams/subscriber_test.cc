@@ -321,6 +321,7 @@ TEST_F(SubscriberTest, ManyClientsAndOneFastSourceAgreeUnderLoad) {
   const auto topic = Open("demo/depth", "disparity_map");
   std::vector<std::thread> clients;
   std::atomic<int> reached_end = 0;
+  clients.reserve(6);
   for (int i = 0; i < 6; ++i) {
     clients.emplace_back([&, i] {
       Client client(hub_, clock_);

@@ -80,6 +80,7 @@ class StalledClients : public VisionTest {
     pb::Subscription wanted = Wish(1, "maps/map", kWindow);
     wanted.set_codec(pb::CODEC_RAW);
     std::vector<std::unique_ptr<StreamClient>> clients;
+    clients.reserve(static_cast<size_t>(count));
     for (int i = 0; i < count; ++i) {
       clients.push_back(
           std::make_unique<StreamClient>(server_.Connect(), operator_, std::vector{wanted}));

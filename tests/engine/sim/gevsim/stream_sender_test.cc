@@ -79,7 +79,7 @@ TEST(StreamSender, SendsNoFasterThanTheLink) {
   const std::vector<int64_t> arrivals_ns = ArrivalsNs({.link_mbps = 10});
   ASSERT_EQ(arrivals_ns.size(), 32u);
   for (size_t i = 16; i < arrivals_ns.size(); ++i) {
-    EXPECT_GE(arrivals_ns[i], 16 * 1'230'400 - kEarlyNs) << "packet " << i;
+    EXPECT_GE(arrivals_ns[i], int64_t{16} * 1'230'400 - kEarlyNs) << "packet " << i;
   }
 }
 
