@@ -10,12 +10,14 @@
 
 #include "engine/base/recycler.h"
 #include "engine/base/str.h"
+#include "engine/calibration/resample.h"
 #include "engine/calibration/validate_rig.h"
 
 namespace vs {
 namespace {
 
 constexpr int kMaxBinning = 16;
+constexpr int kLeastSize = 16;
 
 // Whether binning makes `size` of `calibrated` pixels in one direction. What does not fill a binned
 // pixel is cut off at the far end, so the first pixels stay where they are.
@@ -56,19 +58,29 @@ cv::Vec<double, 5> Distortion(const CameraModel& camera) {
   return {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
 }
 
-// OpenCV's fixed-point maps: whole pixels, and the parts in 1/32 px as 32 * y + x.
 RemapTable MakeTable(const cv::Matx33d& camera, const CameraModel& model,
-                     const cv::Matx33d& rotation, const cv::Matx34d& projection, cv::Size size) {
-  cv::Mat pixels;
-  cv::Mat parts;
-  cv::initUndistortRectifyMap(camera, Distortion(model), rotation, projection, size, CV_16SC2,
-                              pixels, parts);
+                     const cv::Matx33d& rotation, const cv::Matx34d& projection, cv::Size size,
+                     bool exact) {
+  // For whole numbers: pixels, and parts in 1/32 px as 32 * y + x. Else: x, and y.
+  cv::Mat first;
+  cv::Mat second;
+  cv::initUndistortRectifyMap(camera, Distortion(model), rotation, projection, size,
+                              exact ? CV_32FC1 : CV_16SC2, first, second);
   RemapTable table{.width = size.width, .height = size.height};
+  if (exact) {
+    table.positions.reserve(static_cast<size_t>(size.area()));
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        table.positions.push_back({first.at<float>(y, x), second.at<float>(y, x)});
+      }
+    }
+    return table;
+  }
   table.sources.reserve(static_cast<size_t>(size.area()));
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) {
-      const auto pixel = pixels.at<cv::Vec2s>(y, x);
-      const auto part = parts.at<uint16_t>(y, x);
+      const auto pixel = first.at<cv::Vec2s>(y, x);
+      const auto part = second.at<uint16_t>(y, x);
       table.sources.push_back({.x = pixel[0],
                                .y = pixel[1],
                                .x_part = static_cast<uint8_t>(part % 32),
@@ -85,7 +97,8 @@ Result<double> CheckedScale(const StereoRig& rig, int width, int height) {
                                " x ", camera.height, " px, the right one ", rig.right.width, " x ",
                                rig.right.height, " px; only equal cameras can be rectified"));
   }
-  const bool served = width >= 16 && height >= 16 && width <= 16384 && height <= 16384;
+  const bool served =
+      width >= kLeastSize && height >= kLeastSize && width <= 16384 && height <= 16384;
   if (const auto scale = ScaleOf(camera, width, height); served && scale) return *scale;
   return InvalidArgument(
       Str("stereo rig \"", rig.name, "\" is calibrated for ", camera.width, " x ", camera.height,
@@ -97,9 +110,11 @@ Result<double> CheckedScale(const StereoRig& rig, int width, int height) {
 }  // namespace
 
 struct Rectifier::Maps {
+  int width = 0;  // of the pictures
+  int height = 0;
   RectifiedGeometry geometry;
   std::array<double, 9> rectified_from_left_rotation{};
-  Interpolation interpolation = Interpolation::kLinear;
+  RectifyOptions options;
   RemapTable left;
   RemapTable right;
   Recycler<Frame> frames;
@@ -110,11 +125,17 @@ Rectifier::Rectifier(std::shared_ptr<const Maps> maps) : maps_(std::move(maps)) 
 Result<Rectifier> Rectifier::Make(const StereoRig& rig, int width, int height,
                                   const RectifyOptions& options) {
   VS_RETURN_IF_ERROR(ValidateRig(rig));
-  VS_ASSIGN_OR_RETURN(const double scale, CheckedScale(rig, width, height));
+  VS_ASSIGN_OR_RETURN(const double full_scale, CheckedScale(rig, width, height));
   if (!(options.alpha >= 0 && options.alpha <= 1)) {
     return InvalidArgument(Str("rectification: alpha is ", options.alpha, "; it must be 0 .. 1"));
   }
-  const cv::Size size(width, height);
+  const double scale = options.half_size ? full_scale / 2 : full_scale;
+  const cv::Size size =
+      options.half_size ? cv::Size(width / 2, height / 2) : cv::Size(width, height);
+  if (size.width < kLeastSize || size.height < kLeastSize) {
+    return InvalidArgument(Str("rectification: pictures of ", width, " x ", height,
+                               " px are too small to be halved; choose full resolution"));
+  }
   const cv::Matx33d left_camera = CameraMatrix(rig.left, scale);
   const cv::Matx33d right_camera = CameraMatrix(rig.right, scale);
   const cv::Matx33d rotation(rig.right_from_left_rotation.data());
@@ -129,12 +150,14 @@ Result<Rectifier> Rectifier::Make(const StereoRig& rig, int width, int height,
     cv::stereoRectify(left_camera, Distortion(rig.left), right_camera, Distortion(rig.right), size,
                       rotation, translation, left_rotation, right_rotation, left_projection,
                       right_projection, unused, cv::CALIB_ZERO_DISPARITY, options.alpha, size);
-    maps->left = MakeTable(left_camera, rig.left, left_rotation, left_projection, size);
-    maps->right = MakeTable(right_camera, rig.right, right_rotation, right_projection, size);
+    maps->left =
+        MakeTable(left_camera, rig.left, left_rotation, left_projection, size, options.exact_maps);
+    maps->right = MakeTable(right_camera, rig.right, right_rotation, right_projection, size,
+                            options.exact_maps);
     std::copy_n(left_rotation.val, 9, maps->rectified_from_left_rotation.begin());
     const double focal = left_projection(0, 0);
-    maps->geometry = {.width = width,
-                      .height = height,
+    maps->geometry = {.width = size.width,
+                      .height = size.height,
                       .focal_px = focal,
                       .baseline_m = -right_projection(0, 3) / focal,
                       .cx_px = left_projection(0, 2),
@@ -144,7 +167,9 @@ Result<Rectifier> Rectifier::Make(const StereoRig& rig, int width, int height,
     return InvalidArgument(
         Str("stereo rig \"", rig.name, "\" cannot be rectified: ", error.what()));
   }
-  maps->interpolation = options.interpolation;
+  maps->options = options;
+  maps->width = width;
+  maps->height = height;
   const RectifiedGeometry& g = maps->geometry;
   if (!(std::isfinite(g.focal_px) && g.focal_px > 0 && g.baseline_m > 0)) {
     return InvalidArgument(Str("stereo rig \"", rig.name,
@@ -157,15 +182,16 @@ Result<StereoFrame> Rectifier::Rectify(const StereoFrame& raw, BufferPool& pool)
   const auto rectify = [&](const FramePtr& frame, const RemapTable& table) -> Result<FramePtr> {
     if (frame == nullptr) return InvalidArgument("rectification: a picture of the pair is missing");
     const GreyImage& image = frame->image;
-    if (image.width() != maps_->geometry.width || image.height() != maps_->geometry.height) {
+    if (!Fits(image)) {
       return InvalidArgument(Str("rectification: camera ", frame->camera, " gave ", image.width(),
-                                 " x ", image.height(), " px, expected ", maps_->geometry.width,
-                                 " x ", maps_->geometry.height,
-                                 " px; set both cameras to the same size"));
+                                 " x ", image.height(), " px, expected ", maps_->width, " x ",
+                                 maps_->height, " px; set both cameras to the same size"));
     }
     Frame rectified = *frame;
-    rectified.image = GreyImage(pool, image.width(), image.height());
-    Remap(image, table, maps_->interpolation, &rectified.image);
+    rectified.image = GreyImage(pool, table.width, table.height);
+    const RectifyOptions& options = maps_->options;
+    Remap(options.half_size ? Halved(image, pool) : image, table, options.interpolation,
+          &rectified.image);
     return FramePtr(std::allocate_shared<Frame>(maps_->frames, std::move(rectified)));
   };
   StereoFrame pair = raw;
@@ -174,6 +200,10 @@ Result<StereoFrame> Rectifier::Rectify(const StereoFrame& raw, BufferPool& pool)
   pair.geometry = maps_->geometry;
   pair.truth = nullptr;
   return pair;
+}
+
+bool Rectifier::Fits(const GreyImage& picture) const {
+  return picture.width() == maps_->width && picture.height() == maps_->height;
 }
 
 const RectifiedGeometry& Rectifier::geometry() const { return maps_->geometry; }

@@ -17,6 +17,11 @@ struct RectifyOptions {
   // either camera saw, with black borders. 0..1.
   double alpha = 0;
   Interpolation interpolation = Interpolation::kLinear;
+  // Where pixels come from is known to 1/32 px, or exactly. The former shows as a faint ripple in
+  // sub-pixel disparities and takes less time.
+  bool exact_maps = false;
+  // Half the size: pictures are binned 2 x 2 first, because to take every second pixel would alias.
+  bool half_size = false;
 
   bool operator==(const RectifyOptions&) const = default;
 };
@@ -29,13 +34,15 @@ class Rectifier {
   // For pictures of width x height pixels: the calibrated size, an exact multiple of it, or what a
   // camera makes of it when it bins n x n pixels (n = 2 .. 16): it drops the rest of rows and
   // columns, and some cameras one more to get an even size. INVALID_ARGUMENT for any other size,
-  // when the rig is invalid or when the two cameras differ in size.
+  // when the rig is invalid or when the two cameras differ in size. The result has 16 px or more.
   //
   // The size alone tells how a picture came about: a window of the sensor as large as a binned
   // picture is taken for one, and rectified wrongly. Calibrate a window as it is.
   static Result<Rectifier> Make(const StereoRig& rig, int width, int height,
                                 const RectifyOptions& options = {});
 
+  // Whether it was made for pictures of this size.
+  bool Fits(const GreyImage& picture) const;
   // The same pair with rectified pictures and their geometry; no truth, for its pixels moved.
   // Pixels that no camera saw are 0. INVALID_ARGUMENT when a picture has another size.
   Result<StereoFrame> Rectify(const StereoFrame& raw, BufferPool& pool) const;

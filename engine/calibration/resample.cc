@@ -81,4 +81,19 @@ GreyImage Resample(const GreyImage& image, int width, int height, BufferPool& po
   return resampled;
 }
 
+GreyImage Halved(const GreyImage& image, BufferPool& pool) {
+  GreyImage halved(pool, image.width() / 2, image.height() / 2);
+  for (int y = 0; y < halved.height(); ++y) {
+    const uint8_t* above = image.Row(2 * y);
+    const uint8_t* below = image.Row(2 * y + 1);
+    uint8_t* row = halved.Row(y);
+    const int width = halved.width();
+    for (int x = 0; x < width; ++x) {
+      const int sum = above[2 * x] + above[2 * x + 1] + below[2 * x] + below[2 * x + 1];
+      row[x] = static_cast<uint8_t>((sum + 2) / 4);
+    }
+  }
+  return halved;
+}
+
 }  // namespace vs

@@ -14,4 +14,8 @@ namespace vs {
 // factor.
 GreyImage Resample(const GreyImage& image, int width, int height, BufferPool& pool);
 
+// The same picture at half the size, each pixel the mean of 2 x 2, rounded to the nearest: what a
+// camera's binning makes of it. An odd last row or column is left out. At least 2 x 2 px.
+GreyImage Halved(const GreyImage& image, BufferPool& pool);
+
 }  // namespace vs

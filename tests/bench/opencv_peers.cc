@@ -4,6 +4,7 @@
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "engine/image/opencv_view.h"
 
@@ -41,6 +42,24 @@ PeerResult RunOpenCvPeer(const OpenCvPeer& peer, const GreyImage& left, const Gr
     }
   }
   return result;
+}
+
+OpenCvRemap::OpenCvRemap(const CameraModel& camera, int width, int height) {
+  const double scale = static_cast<double>(width) / camera.width;
+  const cv::Matx33d matrix(camera.fx_px * scale, 0, camera.cx_px * scale, 0, camera.fy_px * scale,
+                           camera.cy_px * scale, 0, 0, 1);
+  cv::initUndistortRectifyMap(
+      matrix, cv::Vec<double, 5>(camera.k1, camera.k2, camera.p1, camera.p2, camera.k3),
+      cv::Matx33d::eye(), matrix, {width, height}, CV_16SC2, pixels_, parts_);
+}
+
+double OpenCvRemap::Milliseconds(const GreyImage& picture) const {
+  cv::Mat out;
+  const cv::Mat in = CvView(picture);
+  const auto begin = std::chrono::steady_clock::now();
+  cv::remap(in, out, pixels_, parts_, cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar(0));
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
+      .count();
 }
 
 }  // namespace vs::test

@@ -3,8 +3,11 @@
 #include <string_view>
 #include <vector>
 
+#include <opencv2/core.hpp>
+
 #include "engine/image/disparity_map.h"
 #include "engine/image/image.h"
+#include "engine/image/stereo_rig.h"
 
 namespace vs::test {
 
@@ -24,5 +27,17 @@ struct PeerResult {
 };
 PeerResult RunOpenCvPeer(const OpenCvPeer& peer, const GreyImage& left, const GreyImage& right,
                          int num_disparities, BufferPool& pool);
+
+// OpenCV's remap by fixed-point maps, linearly: what takes the distortion out of a picture.
+class OpenCvRemap {
+ public:
+  OpenCvRemap(const CameraModel& camera, int width, int height);
+  // For one picture.
+  double Milliseconds(const GreyImage& picture) const;
+
+ private:
+  cv::Mat pixels_;
+  cv::Mat parts_;
+};
 
 }  // namespace vs::test

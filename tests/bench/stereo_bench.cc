@@ -145,11 +145,11 @@ class Bench {
 
   void Rectification() {
     const StereoRig rig = sim::DemoRig();
+    cv::setNumThreads(1);
     for (const auto& [size, height] : {std::pair{"648x483", 483}, std::pair{"1296x966", 966}}) {
       const int width = height == 483 ? 648 : 1296;
       const std::string name = Str(size, "_rectify_t1");
       if (!Wanted(name)) continue;
-      const Rectifier rectifier = Rectifier::Make(rig, width, height).value();
       StereoFrame raw;
       for (auto* side : {&raw.left, &raw.right}) {
         auto frame = std::make_shared<Frame>();
@@ -157,10 +157,25 @@ class Bench {
         frame->image.Fill(100);
         *side = frame;
       }
-      TakeTurns(name,
-                {{"rectify", "",
-                  [&] { return MillisecondsOf([&] { rectifier.Rectify(raw, pool_).value(); }); }}},
-                options_);
+      std::vector<Runner> runners;
+      const auto add = [&](const char* what, const RectifyOptions& rectify) {
+        const auto rectifier = Rectifier::Make(rig, width, height, rectify).value();
+        runners.push_back({what, "", [this, rectifier, &raw] {
+                             return MillisecondsOf([&] { rectifier.Rectify(raw, pool_).value(); });
+                           }});
+      };
+      add("fixed", {});
+      add("float", {.exact_maps = true});
+      add("half", {.half_size = true});
+      add("cubic", {.interpolation = Interpolation::kCubic});
+      const OpenCvRemap opencv(rig.left, width, height);
+      if (options_.peers) {
+        runners.push_back({"opencv_remap", "", [&] {
+                             return opencv.Milliseconds(raw.left->image) +
+                                    opencv.Milliseconds(raw.right->image);
+                           }});
+      }
+      TakeTurns(name, runners, options_);
     }
   }
 
@@ -169,6 +184,7 @@ class Bench {
     const auto matcher = *StereoMatchers::Get().Make("cpu");
     DisparityMap map = matcher->Match(left, right, {.num_disparities = 128}, 1, pool_).value();
     map.geometry = sim::IdealGeometry(2);
+    const DepthMap depth = DepthFromDisparity(map, pool_).value();
     const size_t pixels = static_cast<size_t>(left.width()) * left.height();
     std::vector<uint8_t> packed(wire::RvlBound(pixels));
     std::vector<uint8_t> zipped(wire::ZstdPacker::Bound(packed.size()));
@@ -176,6 +192,7 @@ class Bench {
     size_t size = 0;
     const std::pair<std::string, std::function<void()>> works[] = {
         {"depth", [&] { DepthFromDisparity(map, pool_).value(); }},
+        {"points", [&] { PointsFromDepth(depth, pool_).value(); }},
         {"rvl",
          [&] { size = wire::EncodeRvl(map.disparity.Row(0), pixels, 1, pixels * 2, packed); }},
         {"rvl_zstd", [&] {

@@ -45,6 +45,21 @@ class RectifyPair final : public Block {
        .choices = {"nearest", "linear", "cubic"},
        .doc = "How a grey value between pixels is found; cubic is sharper and slower."}};
 
+  Param<std::string> precision{
+      this,
+      "precision",
+      {.initial = "fixed",
+       .choices = {"fixed", "float"},
+       .doc = "How exactly the place of each pixel is known: fixed is 1/32 px and quicker; float "
+              "takes a faint ripple out of depth."}};
+  Param<std::string> resolution{
+      this,
+      "resolution",
+      {.initial = "full",
+       .choices = {"full", "half"},
+       .doc = "With half the pictures are binned first, each pixel the mean of four: four times as "
+              "quick to match, half as fine."}};
+
   Status Start() override {
     rectifier_.reset();
     VS_ASSIGN_OR_RETURN(rig_, FindRig());
@@ -80,10 +95,11 @@ class RectifyPair final : public Block {
 
   // The maps depend on the size of the pictures, which only the first pair tells.
   Status PrepareFor(const GreyImage& image) {
-    const RectifyOptions options{.alpha = *alpha, .interpolation = ChosenInterpolation()};
-    const bool fits = rectifier_ && rectifier_->geometry().width == image.width() &&
-                      rectifier_->geometry().height == image.height() && options == options_;
-    if (fits) return {};
+    const RectifyOptions options{.alpha = *alpha,
+                                 .interpolation = ChosenInterpolation(),
+                                 .exact_maps = *precision == "float",
+                                 .half_size = *resolution == "half"};
+    if (rectifier_ && rectifier_->Fits(image) && options == options_) return {};
     VS_ASSIGN_OR_RETURN(rectifier_, Rectifier::Make(*rig_, image.width(), image.height(), options));
     options_ = options;
     return {};

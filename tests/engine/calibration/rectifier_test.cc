@@ -87,7 +87,8 @@ class RectifierTest : public testing::Test {
     const auto rectifier = Rectifier::Make(rig, width, height, options);
     ASSERT_TRUE(rectifier.has_value()) << rectifier.error().ToString();
     const RectifiedGeometry& g = rectifier->geometry();
-    EXPECT_EQ(g.width, width);
+    EXPECT_EQ(g.width, options.half_size ? width / 2 : width);
+    EXPECT_EQ(g.height, options.half_size ? height / 2 : height);
     EXPECT_NEAR(g.baseline_m, 0.12, 0.0001);
     std::vector<Point> points;
     GreyImage left = Black(width, height);
@@ -169,6 +170,43 @@ TEST_F(RectifierTest, TheFocalLengthOfBinnedPicturesIsThatOfTheRigDivided) {
 
 TEST_F(RectifierTest, MayShowEverythingOrInterpolateCubically) {
   ExpectIdealPair(1296, 966, 1, {.alpha = 1, .interpolation = Interpolation::kCubic});
+}
+
+TEST_F(RectifierTest, TakesPlacesFromExactMapsToo) {
+  ExpectIdealPair(1296, 966, 1, {.exact_maps = true});
+  ExpectIdealPair(1296, 966, 1,
+                  {.alpha = 1, .interpolation = Interpolation::kCubic, .exact_maps = true});
+}
+
+TEST_F(RectifierTest, MayHalveThePictures) {
+  ExpectIdealPair(1296, 966, 1, {.half_size = true});
+  ExpectIdealPair(648, 483, 1.0 / 2, {.exact_maps = true, .half_size = true});
+}
+
+// What lies between the pixels of the half picture must not come through as a pattern that is not
+// there: stripes of one pixel become an even grey.
+TEST_F(RectifierTest, HalvingDoesNotAlias) {
+  GreyImage stripes(pool_, 1296, 966);
+  for (int y = 0; y < 966; ++y) {
+    for (int x = 0; x < 1296; ++x) stripes.Row(y)[x] = x % 2 == 0 ? 200 : 100;
+  }
+  const auto rectifier = Rectifier::Make(SampleRig(), 1296, 966, {.half_size = true});
+  const auto pair =
+      rectifier->Rectify({.left = MakeFrame(stripes), .right = MakeFrame(stripes)}, pool_);
+  ASSERT_TRUE(pair.has_value()) << pair.error().ToString();
+  for (int y = 50; y < 430; ++y) {
+    for (int x = 50; x < 600; ++x) ASSERT_EQ(pair->left->image.Row(y)[x], 150) << x << " " << y;
+  }
+}
+
+TEST_F(RectifierTest, RefusesToHalveTinyPictures) {
+  StereoRig rig = SampleRig();
+  for (CameraModel* camera : {&rig.left, &rig.right}) {
+    *camera = {.width = 30, .height = 30, .fx_px = 40, .fy_px = 40, .cx_px = 14.5, .cy_px = 14.5};
+  }
+  const auto rectifier = Rectifier::Make(rig, 30, 30, {.half_size = true});
+  ASSERT_FALSE(rectifier.has_value());
+  EXPECT_THAT(rectifier.error().message(), HasSubstr("too small to be halved"));
 }
 
 TEST_F(RectifierTest, KeepsWhatIsKnownOfThePairAndDropsItsTruth) {

@@ -69,5 +69,20 @@ TEST_F(ResampleTest, LeavesAPictureOfTheSameSizeAsItIs) {
   EXPECT_THAT(Line({3, 1, 4, 1, 5, 9}, 6), ElementsAre(3, 1, 4, 1, 5, 9));
 }
 
+TEST_F(ResampleTest, HalvedIsTheMeanOfFourAndLeavesOutTheRest) {
+  GreyImage image(pool_, 5, 5);
+  for (int y = 0; y < 5; ++y) {
+    for (int x = 0; x < 5; ++x) image.Row(y)[x] = static_cast<uint8_t>(y * 50 + x);
+  }
+  image.Row(0)[0] = 3;  // (3 + 1 + 50 + 51 + 2) / 4
+  const GreyImage halved = Halved(image, pool_);
+  ASSERT_EQ(halved.width(), 2);
+  ASSERT_EQ(halved.height(), 2);
+  EXPECT_EQ(halved.Row(0)[0], 26);
+  EXPECT_EQ(halved.Row(0)[1], 28);
+  EXPECT_EQ(halved.Row(1)[0], 126);
+  EXPECT_EQ(halved.Row(1)[1], 128);
+}
+
 }  // namespace
 }  // namespace vs
