@@ -6,7 +6,7 @@
 #                 [--wait SECONDS]
 #
 #   --duration SECONDS  end by itself after so many seconds of depth; without it, Ctrl-C ends it
-#   --fps N             pairs per second that the cameras are triggered for (default 10)
+#   --fps N             pairs per second that the cameras are triggered for (default 30)
 #   --port N            where the server listens on this machine (default 50051; 0: any free port)
 #   --folder DIR        serve the picture pairs of a folder in place of the simulated scene
 #   --data DIR          what the server stores (default: ~/.local/state/visionserver-demo)
@@ -21,7 +21,7 @@ usage() { sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "$0"; }
 die() { printf 'run.sh: %s\n' "$*" >&2; exit "${code:-1}"; }
 whole() { [[ $2 =~ ^[0-9]{1,9}$ ]] || code=2 die "$1 needs a whole number, not \"$2\""; }
 
-duration='' fps=10 port=50051 folder='' wait=60
+duration='' fps=30 port=50051 folder='' wait=60
 data=${XDG_STATE_HOME:-$HOME/.local/state}/visionserver-demo
 while (($#)); do
   case $1 in

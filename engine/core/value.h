@@ -12,6 +12,7 @@
 #include "engine/image/depth_map.h"
 #include "engine/image/disparity_map.h"
 #include "engine/image/frame.h"
+#include "engine/image/point_cloud.h"
 #include "engine/image/stereo_rig.h"
 
 namespace vs {
@@ -37,13 +38,13 @@ struct Table {
 // immutable, so that handing a Value on costs a reference count and never a copy of pixels.
 class Value {
  public:
-  using Variant =
-      std::variant<std::monostate, bool, int64_t, double, std::string, Trigger,
-                   std::shared_ptr<const List>, std::shared_ptr<const Table>,
-                   std::shared_ptr<const GreyImage>, std::shared_ptr<const ColorImage>,
-                   std::shared_ptr<const Frame>, std::shared_ptr<const StereoFrame>,
-                   std::shared_ptr<const StereoTruth>, std::shared_ptr<const DisparityMap>,
-                   std::shared_ptr<const DepthMap>, std::shared_ptr<const StereoRig>>;
+  using Variant = std::variant<std::monostate, bool, int64_t, double, std::string, Trigger,
+                               std::shared_ptr<const List>, std::shared_ptr<const Table>,
+                               std::shared_ptr<const GreyImage>, std::shared_ptr<const ColorImage>,
+                               std::shared_ptr<const Frame>, std::shared_ptr<const StereoFrame>,
+                               std::shared_ptr<const StereoTruth>,
+                               std::shared_ptr<const DisparityMap>, std::shared_ptr<const DepthMap>,
+                               std::shared_ptr<const PointCloud>, std::shared_ptr<const StereoRig>>;
 
   Value() = default;
   // From anything that the variant holds.
@@ -100,6 +101,7 @@ VS_PORT_TYPE(StereoFrame, "stereo_frame");
 VS_PORT_TYPE(StereoTruth, "stereo_truth");
 VS_PORT_TYPE(DisparityMap, "disparity_map");
 VS_PORT_TYPE(DepthMap, "depth_map");
+VS_PORT_TYPE(PointCloud, "point_cloud");
 VS_PORT_TYPE(StereoRig, "stereo_rig");
 #undef VS_PORT_TYPE
 

@@ -44,8 +44,10 @@ Result<PictureFolder> PictureFolder::Open(const fs::path& folder) {
     for (auto file = fs::directory_iterator(folder, error);
          !error && file != fs::directory_iterator(); file.increment(error)) {
       std::error_code gone;
-      const auto bytes = file->path().extension() == ".png" ? file->file_size(gone) : 0;
-      if (!gone && file->path().extension() == ".png") {
+      const auto extension = file->path().extension();
+      const bool counts = extension == ".png" || extension == ".ply";
+      const auto bytes = counts ? file->file_size(gone) : 0;
+      if (!gone && counts) {
         found.push_back({file->path().filename().string(), static_cast<int64_t>(bytes)});
       }
     }

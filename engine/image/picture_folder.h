@@ -20,8 +20,8 @@ class PictureFolder {
     bool delete_oldest = false;  // make room; otherwise refuse what is too much
   };
 
-  // Makes the folder if necessary and counts the *.png files that are in it. FAILED_PRECONDITION
-  // when it cannot be used.
+  // Makes the folder if necessary and counts the *.png and *.ply files that are in it.
+  // FAILED_PRECONDITION when it cannot be used.
   static Result<PictureFolder> Open(const std::filesystem::path& folder);
 
   // Writes the file whole or not at all; the oldest file is that with the smallest name.

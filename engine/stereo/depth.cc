@@ -41,4 +41,30 @@ Result<DepthMap> DepthFromDisparity(const DisparityMap& map, BufferPool& pool) {
   return depth;
 }
 
+Result<PointCloud> PointsFromDepth(const DepthMap& map, BufferPool& pool) {
+  VS_RETURN_IF_ERROR(CheckGeometry(map.geometry));
+  const int width = map.depth_m.width();
+  const int height = map.depth_m.height();
+  PointCloud cloud{.x_m = Image<float>(pool, width, height),
+                   .y_m = Image<float>(pool, width, height),
+                   .z_m = Image<float>(pool, width, height),
+                   .geometry = map.geometry};
+  const auto per_pixel = static_cast<float>(1 / map.geometry.focal_px);
+  const auto cx_px = static_cast<float>(map.geometry.cx_px);
+  for (int v = 0; v < height; ++v) {
+    const float* depth_m = map.depth_m.Row(v);
+    float* x_m = cloud.x_m.Row(v);
+    float* y_m = cloud.y_m.Row(v);
+    float* z_m = cloud.z_m.Row(v);
+    const auto down = static_cast<float>((v - map.geometry.cy_px) / map.geometry.focal_px);
+    for (int u = 0; u < width; ++u) {
+      const float z = depth_m[u];
+      x_m[u] = (static_cast<float>(u) - cx_px) * per_pixel * z;
+      y_m[u] = down * z;
+      z_m[u] = z;
+    }
+  }
+  return cloud;
+}
+
 }  // namespace vs

@@ -68,6 +68,16 @@ std::shared_ptr<const DepthMap> Depth(Size size, float depth_m) {
   return std::make_shared<const DepthMap>(map);
 }
 
+std::shared_ptr<const PointCloud> Cloud(Size size, float z_m) {
+  PointCloud cloud{Image<float>(Pool(), size.width, size.height),
+                   Image<float>(Pool(), size.width, size.height),
+                   Image<float>(Pool(), size.width, size.height), Geometry(size)};
+  cloud.x_m.Fill(z_m / 4);
+  cloud.y_m.Fill(z_m / 8);
+  cloud.z_m.Fill(z_m);
+  return std::make_shared<const PointCloud>(cloud);
+}
+
 std::shared_ptr<const StereoRig> Rig() {
   StereoRig rig;
   rig.name = "synthetic";
@@ -142,6 +152,12 @@ class Hash {
     Add(map.depth_m);
     Add(map.geometry);
   }
+  void Add(const PointCloud& cloud) {
+    Add(cloud.x_m);
+    Add(cloud.y_m);
+    Add(cloud.z_m);
+    Add(cloud.geometry);
+  }
   void Add(const StereoRig& rig) {
     Add(rig.name);
     Add(rig.left);
@@ -212,6 +228,14 @@ std::vector<Value> SyntheticValues(std::string_view port_type) {
     for (const Size& size : kSizes) {
       values.push_back(Depth(size, 1.25F));
       values.push_back(Depth(size, std::nanf("")));
+    }
+    return values;
+  }
+  if (port_type == "point_cloud") {
+    std::vector<Value> values;
+    for (const Size& size : kSizes) {
+      values.push_back(Cloud(size, 1.25F));
+      values.push_back(Cloud(size, std::nanf("")));
     }
     return values;
   }

@@ -1,14 +1,16 @@
-// Saves pictures and maps as PNG files, within limits.
+// Saves pictures and maps as PNG files and point clouds as PLY files, within limits.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 #include "engine/base/str.h"
 #include "engine/core/block.h"
 #include "engine/image/picture_folder.h"
+#include "engine/image/ply.h"
 #include "engine/image/png.h"
 
 namespace vs {
@@ -75,7 +77,8 @@ Image<uint16_t> Depth16(const DepthMap& map, BufferPool& pool) {
 class SaveImages final : public Block {
  public:
   In<Value> picture{this, "picture",
-                    "What to save: a frame, stereo frame, picture, disparity map or depth map."};
+                    "What to save: a frame, stereo frame, picture, disparity map, depth map or "
+                    "point cloud."};
   In<bool> pass{this, "pass", "Whether the part is good, for the policy fail.", Need::kOptional};
   Out<std::string> path{this, "path",
                         "The first file of this frame, below the server's data folder."};
@@ -157,12 +160,13 @@ class SaveImages final : public Block {
  private:
   static bool CanSave(std::string_view type) {
     return type == "frame" || type == "stereo_frame" || type == "grey_image" ||
-           type == "color_image" || type == "disparity_map" || type == "depth_map" || type == "any";
+           type == "color_image" || type == "disparity_map" || type == "depth_map" ||
+           type == "point_cloud" || type == "any";
   }
   static Status WrongType(std::string_view type) {
     return InvalidArgument(
         Str("picture must be a frame, stereo_frame, grey_image, color_image, "
-            "disparity_map or depth_map, not ",
+            "disparity_map, depth_map or point_cloud, not ",
             type));
   }
 
@@ -188,6 +192,9 @@ class SaveImages final : public Block {
   Status Save(const std::shared_ptr<const DepthMap>& map) {
     return Write(Depth16(*map, pool()), "depth");
   }
+  Status Save(const std::shared_ptr<const PointCloud>& cloud) {
+    return Write(EncodePly(*cloud), "points", ".ply");
+  }
   template <class T>
   Status Save(const T&) {
     return WrongType(TypeName(*picture));
@@ -196,19 +203,22 @@ class SaveImages final : public Block {
   template <class Picture>
   Status Write(const Picture& image, const char* kind) {
     VS_ASSIGN_OR_RETURN(const std::vector<uint8_t> png, EncodePng(image));
+    return Write(png, kind, ".png");
+  }
+  Status Write(const std::vector<uint8_t>& content, std::string_view kind, const char* extension) {
     char number[16];
     std::snprintf(number, sizeof number, "%08llu",
                   static_cast<unsigned long long>(frame().number % 100'000'000));
     const std::string name =
-        Str(FileTime(environment().clock->UtcNs()), "_", number, "_", kind, ".png");
+        Str(FileTime(environment().clock->UtcNs()), "_", number, "_", kind, extension);
     PictureFolder::Limits limits;
     limits.max_files = *max_files;
     limits.max_bytes = *max_total_mb * kBytesPerMb;
     limits.min_free_bytes = *min_free_mb * kBytesPerMb;
     limits.delete_oldest = *when_full == "delete_oldest";
-    VS_RETURN_IF_ERROR(folder_->Write(name, png, limits));
+    VS_RETURN_IF_ERROR(folder_->Write(name, content, limits));
     saved.Set(++files_);
-    if (std::string_view(kind) != "right") path.Set(Str(*folder, "/", name));
+    if (kind != "right") path.Set(Str(*folder, "/", name));
     return Status();
   }
 
@@ -220,7 +230,8 @@ class SaveImages final : public Block {
 VS_REGISTER_BLOCK(SaveImages,
                   {.category = "Record",
                    .doc = "Saves pictures as PNG files: 8-bit for pictures, 16-bit for maps "
-                          "(disparity in 1/256 px, depth in mm, 0 where there is none)."});
+                          "(disparity in 1/256 px, depth in mm, 0 where there is none). Point "
+                          "clouds become PLY files in metres."});
 
 }  // namespace
 }  // namespace vs

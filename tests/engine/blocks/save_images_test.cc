@@ -116,6 +116,20 @@ TEST_F(SaveImages, WritesDepthInMillimetresAndColourAsItIs) {
   EXPECT_EQ(Load(*block_.Output<std::string>("path")).at<cv::Vec3b>(0, 0), cv::Vec3b(50, 100, 200));
 }
 
+TEST_F(SaveImages, WritesPointsAsPly) {
+  PointCloud cloud{
+      Image<float>(pool_, 1, 1), Image<float>(pool_, 1, 1), Image<float>(pool_, 1, 1), {}};
+  cloud.x_m.Fill(1);
+  cloud.y_m.Fill(2);
+  cloud.z_m.Fill(3);
+  block_.Input("picture", std::make_shared<const PointCloud>(cloud));
+  ASSERT_TRUE(block_.Start().ok());
+  ASSERT_TRUE(block_.Run().ok());
+  const std::string path = *block_.Output<std::string>("path");
+  EXPECT_TRUE(path.ends_with("_points.ply")) << path;
+  EXPECT_EQ(Files().size(), 1u);
+}
+
 TEST_F(SaveImages, ChoosesFramesByItsPolicy) {
   block_.Input("picture", FrameOf(pool_, 1));
   block_.Input("pass", true);

@@ -50,5 +50,31 @@ TEST_F(Depth, NeedsTheGeometry) {
   EXPECT_EQ(depth.error().code(), StatusCode::kFailedPrecondition);
 }
 
+TEST_F(Depth, PointsLieWhereThePixelsLook) {
+  DisparityMap map = Map({{960, 0, 480}, {0, 480, 960}});
+  map.geometry.cx_px = 1;
+  map.geometry.cy_px = 0.5;
+  const auto depth = DepthFromDisparity(map, pool_);
+  ASSERT_TRUE(depth.has_value());
+  const auto cloud = PointsFromDepth(*depth, pool_);
+  ASSERT_TRUE(cloud.has_value());
+  // 1 m away, one pixel of 500 to the left and half a one up.
+  EXPECT_FLOAT_EQ(cloud->x_m.Row(0)[0], -0.002F);
+  EXPECT_FLOAT_EQ(cloud->y_m.Row(0)[0], -0.001F);
+  EXPECT_FLOAT_EQ(cloud->z_m.Row(0)[0], 1.0F);
+  // 2 m away, on the axis but for half a pixel down.
+  EXPECT_FLOAT_EQ(cloud->x_m.Row(1)[1], 0.0F);
+  EXPECT_FLOAT_EQ(cloud->y_m.Row(1)[1], 0.002F);
+  for (const auto* image : {&cloud->x_m, &cloud->y_m, &cloud->z_m}) {
+    EXPECT_TRUE(std::isnan(image->Row(0)[1]));
+  }
+  EXPECT_EQ(cloud->geometry, map.geometry);
+}
+
+TEST_F(Depth, PointsNeedTheGeometry) {
+  const DepthMap depth{Image<float>(pool_, 2, 2), {}};
+  EXPECT_EQ(PointsFromDepth(depth, pool_).error().code(), StatusCode::kFailedPrecondition);
+}
+
 }  // namespace
 }  // namespace vs
