@@ -201,6 +201,11 @@ TEST_F(GigeDepth, OfAPhotographedPairIsTrueAtTheClient) {
                 score.valid_percent);
     // Its truth has whole pixels of the full size, so that bad-1 means little.
     EXPECT_LE(score.bad2_percent, 4.5);
+    if (const char* folder = std::getenv("VS_PICTURES"); folder != nullptr) {
+      const ColorImage measured = ColorizeDisparity(map, ColorMap::kTurbo, 15, 110, pool_);
+      WritePicture(std::filesystem::path(folder) / "photographs.png",
+                   SideBySide(scene->left, measured, pool_));
+    }
   }
 }
 
