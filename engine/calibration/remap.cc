@@ -37,8 +37,9 @@ struct Fixed {
   static Weights<int64_t, 4> Cubic(Part part) {
     const int64_t t = part;
     const int64_t s = kParts - t;
-    return {-3 * t * s * s, (5 * t - 9 * kParts) * t * t + (1 << 17),
-            (5 * s - 9 * kParts) * s * s + (1 << 17), -3 * s * t * t};
+    constexpr int64_t kNine = 9 * kParts;
+    return {-3 * t * s * s, (5 * t - kNine) * t * t + (1 << 17),
+            (5 * s - kNine) * s * s + (1 << 17), -3 * s * t * t};
   }
   template <size_t kTaps>
   static uint8_t Grey(int64_t sum) {
@@ -90,6 +91,7 @@ struct Exact {
     const auto c = static_cast<float>(below[0]);
     const float top = a + x_part * (static_cast<float>(above[1]) - a);
     const float bottom = c + x_part * (static_cast<float>(below[1]) - c);
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): never negative.
     return static_cast<uint8_t>(static_cast<int>(top + y_part * (bottom - top) + 0.5F));
   }
 };
@@ -141,7 +143,7 @@ uint8_t Cubic(const GreyImage& in, const typename Kind::Entry& entry) {
 // A row, in pieces: first everything is fetched, pixel by pixel, then all is mixed side by side.
 template <class Kind>
 void LinearRow(const GreyImage& in, const typename Kind::Entry* entries, int count, uint8_t* out) {
-  constexpr int kPiece = 64;
+  constexpr ptrdiff_t kPiece = 64;
   uint8_t above[2 * kPiece];
   uint8_t below[2 * kPiece];
   typename Kind::Part x_parts[kPiece];
@@ -150,10 +152,10 @@ void LinearRow(const GreyImage& in, const typename Kind::Entry* entries, int cou
   const auto stride = static_cast<ptrdiff_t>(in.stride_bytes());
   const auto columns = static_cast<unsigned>(in.width() - 1);
   const auto rows = static_cast<unsigned>(in.height() - 1);
-  for (int begin = 0; begin < count; begin += kPiece) {
-    const int size = std::min(kPiece, count - begin);
+  for (ptrdiff_t begin = 0; begin < count; begin += kPiece) {
+    const ptrdiff_t size = std::min(kPiece, count - begin);
     bool all_inside = true;
-    for (int k = 0; k < size; ++k) {
+    for (ptrdiff_t k = 0; k < size; ++k) {
       const auto place = Kind::PlaceOf(entries[begin + k]);
       const bool inside =
           static_cast<unsigned>(place.x) < columns && static_cast<unsigned>(place.y) < rows;
@@ -165,11 +167,11 @@ void LinearRow(const GreyImage& in, const typename Kind::Entry* entries, int cou
       y_parts[k] = place.y_part;
     }
     if (all_inside) {
-      for (int k = 0; k < size; ++k) {
+      for (ptrdiff_t k = 0; k < size; ++k) {
         out[begin + k] = Kind::MixFour(above + 2 * k, below + 2 * k, x_parts[k], y_parts[k]);
       }
     } else {
-      for (int k = 0; k < size; ++k) out[begin + k] = Linear<Kind>(in, entries[begin + k]);
+      for (ptrdiff_t k = 0; k < size; ++k) out[begin + k] = Linear<Kind>(in, entries[begin + k]);
     }
   }
 }

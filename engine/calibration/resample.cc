@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 namespace vs {
@@ -87,8 +88,8 @@ GreyImage Halved(const GreyImage& image, BufferPool& pool) {
     const uint8_t* above = image.Row(2 * y);
     const uint8_t* below = image.Row(2 * y + 1);
     uint8_t* row = halved.Row(y);
-    const int width = halved.width();
-    for (int x = 0; x < width; ++x) {
+    const ptrdiff_t width = halved.width();
+    for (ptrdiff_t x = 0; x < width; ++x) {
       const int sum = above[2 * x] + above[2 * x + 1] + below[2 * x] + below[2 * x + 1];
       row[x] = static_cast<uint8_t>((sum + 2) / 4);
     }

@@ -31,7 +31,8 @@ class ReferenceMatcher final : public StereoMatcher {
 
   Result<DisparityMap> MatchConditioned(const PicturePair& pair, const SgmSettings& settings,
                                         int threads, BufferPool& pool) override {
-    const auto& [left, right] = pair;
+    const GreyImage& left = pair.left;
+    const GreyImage& right = pair.right;
     const int width = left.width();
     const int height = left.height();
     parts_ = std::clamp(threads, 1, std::min(width, height));

@@ -126,7 +126,7 @@ class Counterparts {
 
   size_t plane_size_;
   const uint8_t* at_[kStripes];  // the first plane's features, by stripe
-  Cell<kStripes> held_[kHeld ? kPlanes : 1];
+  Cell<kStripes> held_[kPlanes];  // only if kHeld
 };
 
 // C(x, i) of pixel_cost.h for one stripe of indices. `left` is the left pixel in the first plane.

@@ -18,7 +18,7 @@ bool CostSource::Prepare(const Kernels* kernels, const Plan* plan, CostKind kind
   end_ = end;
   held_rows_.assign(kRows, -1);
   if (rows_.Reserve(kRows * RowBytes()) == nullptr) return false;
-  like_before_.resize(static_cast<size_t>(plan->width + 1 + kernels->lanes));
+  like_before_.resize(static_cast<size_t>(plan->width) + 1 + kernels->lanes);
   if (!HasWindow()) return true;
   held_sums_.assign(static_cast<size_t>(plan->window_height), -1);
   window_.resize(held_sums_.size());
