@@ -90,9 +90,9 @@ int Integer(const json& object, const char* key, const std::string& place) {
 }
 
 const json& List(const json& object, const char* key, const std::string& place) {
-  static const json kEmpty = json::array();
+  static const json empty = json::array();
   const auto found = object.find(key);
-  if (found == object.end()) return kEmpty;
+  if (found == object.end()) return empty;
   if (!found->is_array()) throw Fault{place + "." + key + " is no list [...]"};
   return *found;
 }

@@ -146,9 +146,9 @@ class Bench {
   void Rectification() {
     const StereoRig rig = sim::DemoRig();
     cv::setNumThreads(1);
-    for (const auto& [size, height] : {std::pair{"648x483", 483}, std::pair{"1296x966", 966}}) {
+    for (const int height : {483, 966}) {
       const int width = height == 483 ? 648 : 1296;
-      const std::string name = Str(size, "_rectify_t1");
+      const std::string name = Str(width, "x", height, "_rectify_t1");
       if (!Wanted(name)) continue;
       StereoFrame raw;
       for (auto* side : {&raw.left, &raw.right}) {

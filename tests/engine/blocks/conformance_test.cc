@@ -118,10 +118,10 @@ class EveryBlock : public ::testing::TestWithParam<std::string> {
 
 TEST_P(EveryBlock, DescribesItselfToUsers) {
   EXPECT_TRUE(GetParam()[0] >= 'A' && GetParam()[0] <= 'Z') << "type names are PascalCase";
-  static const std::set<std::string> kCategories = {
+  static const std::set<std::string> categories = {
       "Acquire", "Prepare", "Stereo", "Vision",      "Space",  "Calibrate", "Robot",
       "Math",    "Logic",   "Script", "Communicate", "Record", "Display"};
-  EXPECT_EQ(kCategories.count(info().category), 1u) << info().category;
+  EXPECT_EQ(categories.count(info().category), 1u) << info().category;
   ExpectSentence(info().doc, GetParam());
   BlockHarness harness(GetParam());
   for (const auto* ports : {&harness.block().inputs(), &harness.block().outputs()}) {

@@ -150,9 +150,9 @@ TEST(LiveParameters, CountsAnIntegerForANumberAsThatNumber) {
     Param<double> factor{this, "factor", {.initial = 1, .doc = "Factor."}};
     Status Run() override { return Status(); }
   };
-  static const bool kAdded = BlockRegistry::Get().Add("Scale", {"Test", "Scales."},
-                                                      [] { return std::make_unique<Scale>(); });
-  ASSERT_TRUE(kAdded);
+  static const bool added = BlockRegistry::Get().Add("Scale", {"Test", "Scales."},
+                                                     [] { return std::make_unique<Scale>(); });
+  ASSERT_TRUE(added);
   SequenceSpec spec;
   spec.id = "scale";
   spec.blocks = {{"scale", "Scale", {}}};

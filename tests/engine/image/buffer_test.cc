@@ -31,7 +31,7 @@ TEST(BufferPool, KeepsLittleOfSizesThatComeNoMore) {
   for (size_t pages = 1; pages <= 100; ++pages) (void)pool.Acquire(pages * kPageBytes);
   EXPECT_EQ(pool.SlabsMade(), 100u);
   // 84 .. 100 pages: the new slab and the 16 before it.
-  EXPECT_EQ(pool.BytesHeld(), 17u * 92 * kPageBytes);
+  EXPECT_EQ(pool.BytesHeld(), size_t{17} * 92 * kPageBytes);
 }
 
 TEST(BufferPool, MakesNothingNewWhileTheSameFewSizesComeAgain) {
