@@ -37,7 +37,7 @@ struct Fixed {
   static Weights<int64_t, 4> Cubic(Part part) {
     const int64_t t = part;
     const int64_t s = kParts - t;
-    constexpr int64_t kNine = 9 * kParts;
+    constexpr int64_t kNine = int64_t{9} * kParts;
     return {-3 * t * s * s, (5 * t - kNine) * t * t + (1 << 17),
             (5 * s - kNine) * s * s + (1 << 17), -3 * s * t * t};
   }
