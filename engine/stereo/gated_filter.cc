@@ -48,8 +48,9 @@ int SumOf(const Lanes& lanes) {
 }
 
 // Of the window around pixel x of its middle row; kInvalidDisparity when the members are too few or
-// disagree.
-uint16_t FillValue(const uint16_t* const* rows, const uint16_t* const* greys, int gate, int x) {
+// disagree. Not inlined: the loop over all pixels, few of which are holes, needs the registers.
+[[gnu::noinline]] uint16_t FillValue(const uint16_t* const* rows, const uint16_t* const* greys,
+                                     int gate, int x) {
   Lanes members[kFillSize];  // those that are none become greater than any
   Lanes present = {};
   Lanes low = ~Lanes{};
@@ -132,7 +133,8 @@ void GatedFilterRows(const DisparityMap& in, const GreyImage& left,
     if (options.median) {
       kernels.gated_median5(around + kInner, greys_around + kInner, width, options.gate, median);
       for (int x = 0; x < width; ++x) {
-        disparity[x] = disparity[x] != kInvalidDisparity ? median[x] : kInvalidDisparity;
+        const uint16_t valid = disparity[x] != kInvalidDisparity ? 0xffff : 0;
+        disparity[x] = median[x] & valid;  // no branch, so that this vectorises
       }
     }
     if (!options.fill) continue;

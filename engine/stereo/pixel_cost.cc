@@ -112,7 +112,8 @@ int FeaturePlanes(const SgmSettings& settings) {
 
 void CoarseGreyRow(const PaddedPicture& picture, int y, uint8_t* out) {
   const uint8_t* row = picture.Row(y);
-  for (int x = 0; x < picture.width(); ++x) out[x] = static_cast<uint8_t>((row[x] + 2) >> 2);
+  const int width = picture.width();
+  for (int x = 0; x < width; ++x) out[x] = static_cast<uint8_t>((row[x] + 2) >> 2);
 }
 
 void FeatureRow(const PaddedPicture& picture, const SgmSettings& settings, int y, uint8_t* planes) {

@@ -227,7 +227,7 @@ Status CpuMatcher::Prepare(const GreyImage& left, const GreyImage& right,
 }
 
 void CpuMatcher::MakeFeatures(const SgmSettings& settings, int part, RowRange rows) {
-  const Plan& plan = frame_.plan;
+  const Plan plan = frame_.plan;  // a copy that no byte that is stored could change
   const auto width = static_cast<size_t>(plan.width);
   std::vector<uint8_t>& right = feature_rows_[part];
   for (int y = rows.begin; y < rows.end; ++y) {
