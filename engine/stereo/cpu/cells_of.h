@@ -119,8 +119,14 @@ VS_INLINE void SetOutside(const Plan& plan, const Layout<kStripes>& layout, int 
     *cost = layout.outside;
     return;
   }
-  const V first = Simd::Set(static_cast<uint8_t>(inside.begin));
   const V last = Simd::Set(static_cast<uint8_t>(inside.end - 1));
+  if (inside.begin == 0) {  // mostly: only a negative disparity leads out on the right
+    for (int r = 0; r < kStripes; ++r) {
+      cost->v[r] = Simd::IfLess(last, layout.index.v[r], layout.outside.v[r], cost->v[r]);
+    }
+    return;
+  }
+  const V first = Simd::Set(static_cast<uint8_t>(inside.begin));
   for (int r = 0; r < kStripes; ++r) {
     const V nearest = Simd::Min(Simd::Max(layout.index.v[r], first), last);
     cost->v[r] = Simd::IfEqual(nearest, layout.index.v[r], cost->v[r], layout.outside.v[r]);
