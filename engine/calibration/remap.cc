@@ -154,15 +154,15 @@ void LinearRow(const GreyImage& in, const typename Kind::Entry* entries, int cou
   const auto rows = static_cast<unsigned>(in.height() - 1);
   for (ptrdiff_t begin = 0; begin < count; begin += kPiece) {
     const ptrdiff_t size = std::min(kPiece, count - begin);
+    bool inside[kPiece];
     bool all_inside = true;
     for (ptrdiff_t k = 0; k < size; ++k) {
       const auto place = Kind::PlaceOf(entries[begin + k]);
-      const bool inside =
-          static_cast<unsigned>(place.x) < columns && static_cast<unsigned>(place.y) < rows;
-      all_inside = all_inside && inside;
-      const uint8_t* at = inside ? origin + place.y * stride + place.x : origin;
+      inside[k] = static_cast<unsigned>(place.x) < columns && static_cast<unsigned>(place.y) < rows;
+      all_inside = all_inside && inside[k];
+      const uint8_t* at = inside[k] ? origin + place.y * stride + place.x : origin;
       std::memcpy(above + 2 * k, at, 2);
-      std::memcpy(below + 2 * k, at + (inside ? stride : 0), 2);
+      std::memcpy(below + 2 * k, at + (inside[k] ? stride : 0), 2);
       x_parts[k] = place.x_part;
       y_parts[k] = place.y_part;
     }
@@ -171,7 +171,11 @@ void LinearRow(const GreyImage& in, const typename Kind::Entry* entries, int cou
         out[begin + k] = Kind::MixFour(above + 2 * k, below + 2 * k, x_parts[k], y_parts[k]);
       }
     } else {
-      for (ptrdiff_t k = 0; k < size; ++k) out[begin + k] = Linear<Kind>(in, entries[begin + k]);
+      for (ptrdiff_t k = 0; k < size; ++k) {
+        out[begin + k] = inside[k]
+                             ? Kind::MixFour(above + 2 * k, below + 2 * k, x_parts[k], y_parts[k])
+                             : Linear<Kind>(in, entries[begin + k]);
+      }
     }
   }
 }

@@ -31,8 +31,8 @@ struct RemapTable {
 };
 
 // Moves pixels: out(p) = in at table(p); the same on every machine. From sources in whole numbers,
-// from positions in floats. What lies outside `in` counts as 0. kCubic is Keys' kernel with a =
-// -0.75. `out` has the table's size and shares no memory with `in`. No heap memory.
+// from positions in floats. What lies outside `in` counts as 0. kCubic is Keys' kernel (1981)
+// with a = -0.75. `out` has the table's size and shares no memory with `in`. No heap memory.
 void Remap(const GreyImage& in, const RemapTable& table, Interpolation interpolation,
            GreyImage* out);
 

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <string>
+#include <utility>
+
+#include "engine/base/str.h"
 #include "engine/core/param.h"
 #include "engine/image/pixel_rect.h"
 
@@ -9,7 +13,13 @@ namespace vs {
 // and roi_height, px. Initially the whole picture.
 class RegionParams {
  public:
-  explicit RegionParams(Block* owner) : owner_(owner) {}
+  // `effect` says what happens to the region, as a user's text: "The region that is judged."
+  RegionParams(Block* owner, const char* effect)
+      : x_(owner, "roi_x", Options(Str(effect, " Its left edge."))),
+        y_(owner, "roi_y", Options("Upper edge of the region.")),
+        width_(owner, "roi_width", Options("Width of the region; 0 reaches to the right edge.")),
+        height_(owner, "roi_height",
+                Options("Height of the region; 0 reaches to the lower edge.")) {}
 
   // May reach beyond the picture; see Inside().
   PixelRect operator*() const {
@@ -20,20 +30,19 @@ class RegionParams {
  private:
   static constexpr int kMax = 16384;
 
-  static ParamOptions<int> Options(const char* doc) {
-    return {
-        .initial = 0, .min = 0, .max = kMax, .unit = "px", .operator_editable = true, .doc = doc};
+  static ParamOptions<int> Options(std::string doc) {
+    return {.initial = 0,
+            .min = 0,
+            .max = kMax,
+            .unit = "px",
+            .operator_editable = true,
+            .doc = std::move(doc)};
   }
 
-  Block* owner_;
-  Param<int> x_{
-      owner_, "roi_x",
-      Options("Left edge of the region that counts; the rest of the picture is ignored.")};
-  Param<int> y_{owner_, "roi_y", Options("Upper edge of the region.")};
-  Param<int> width_{owner_, "roi_width",
-                    Options("Width of the region; 0 reaches to the right edge.")};
-  Param<int> height_{owner_, "roi_height",
-                     Options("Height of the region; 0 reaches to the lower edge.")};
+  Param<int> x_;
+  Param<int> y_;
+  Param<int> width_;
+  Param<int> height_;
 };
 
 }  // namespace vs

@@ -75,6 +75,7 @@ int SumOf(const Lanes& lanes) {
   const auto span_of_members = static_cast<unsigned>(GreatestOf(high) - least_member);
   int median = least_member;
   for (int bit = static_cast<int>(std::bit_floor(span_of_members)); bit != 0; bit >>= 1) {
+    if (median + bit > 0xffff) continue;
     const auto limit = static_cast<uint16_t>(median + bit);
     Lanes below = {};
     for (const Lanes& row : members) below -= static_cast<Lanes>(row < limit);

@@ -64,6 +64,13 @@ int ViewDifference(const uint8_t* right_index, int index, int counterpart, bool 
   return std::min(difference, std::abs(right_index[before] - index));
 }
 
+// Rule 3.
+InvalidReason WhyTheViewsDiffer(const GreyImage& left, int x, int y, int index, int last) {
+  if (index == 0) return InvalidReason::kOutOfRangeFar;
+  if (index == last) return InvalidReason::kOutOfRangeNear;
+  return Explain(InvalidReason::kOccluded, left, x, y);
+}
+
 }  // namespace
 
 int DisparityOffset(const SgmSettings& settings) {
@@ -106,9 +113,7 @@ void JudgeRow(const SgmSettings& settings, const GreyImage& left, int y, const W
       confidence[x] = std::max(static_cast<uint8_t>(confidence[x] >> std::min(difference, 8)),
                                kLeastConfidence);
       if (difference > tolerance) {
-        reason = i == 0      ? InvalidReason::kOutOfRangeFar
-                 : i == last ? InvalidReason::kOutOfRangeNear
-                             : Explain(InvalidReason::kOccluded, left, x, y);
+        reason = WhyTheViewsDiffer(left, x, y, i, last);
       } else if (row.second[x] * least_percent < row.best[x] * 100) {
         reason = Explain(InvalidReason::kAmbiguous, left, x, y);
       } else if (confidence[x] < min_confidence) {

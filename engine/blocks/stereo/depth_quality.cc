@@ -33,7 +33,7 @@ class DepthQuality final : public Block {
   Out<double> depth_bias{this, "depth_bias",
                          "Mean relative error of depth, % (positive: measured too far). Only with "
                          "truth."};
-  RegionParams region{this};
+  RegionParams region{this, "The region that is judged."};
 
   Status Run() override {
     valid.Set(ValidPercent(*disparity, *region));

@@ -23,7 +23,8 @@ class DepthToPoints final : public Block {
 
 VS_REGISTER_BLOCK(DepthToPoints, {.category = "Stereo",
                                   .doc = "Computes the point in space that each pixel of a depth "
-                                         "map shows. SaveImages writes it as a PLY file."});
+                                         "map shows. SaveImages writes them as a PLY file; clients "
+                                         "are sent depth, not points."});
 
 }  // namespace
 }  // namespace vs

@@ -75,8 +75,7 @@ class SgmStereo final : public Block {
               "from their initial value count instead. quality is the most exact; strict fills "
               "nothing in and suits robots; lean is a little quicker; eight searches 8 directions; "
               "paper is Woodward et al. 2010; single_pass shows what speed is possible."}};
-  // Pixels outside it are masked.
-  RegionParams region{this};
+  RegionParams region{this, "The region that is matched; the rest is masked."};
 
   Param<int> min_disparity{
       this,

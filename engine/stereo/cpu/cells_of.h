@@ -34,8 +34,6 @@ VS_INLINE int Clamp(int value, int low, int high) {
   return value < low ? low : value > high ? high : value;
 }
 
-VS_INLINE int Distance(int a, int b) { return a > b ? a - b : b - a; }
-
 // One cell in registers.
 template <int kStripes>
 struct Cell {

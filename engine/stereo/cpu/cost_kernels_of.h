@@ -126,7 +126,8 @@ class Counterparts {
 
   size_t plane_size_;
   const uint8_t* at_[kStripes];  // the first plane's features, by stripe
-  Cell<kStripes> held_[kPlanes];  // only if kHeld
+  static constexpr int kHeldPlanes = kHeld ? kPlanes : 1;
+  Cell<kStripes> held_[kHeldPlanes];
 };
 
 // C(x, i) of pixel_cost.h for one stripe of indices. `left` is the left pixel in the first plane.
@@ -178,10 +179,12 @@ class RawCosts {
 
   // The cell of column x; afterwards that of x + 1 can be had.
   VS_INLINE void Compute(int x, Cell<kStripes>* cost) {
+    if (!AnyInside(x)) {
+      *cost = layout_.outside;
+      next_ = -1;
+      return;
+    }
     if (x != next_) counterparts_ = Counterparts<kStripes, PlanesOf(kKind)>(plan_, right_, x);
-    *cost = layout_.outside;
-    next_ = -1;
-    if (!AnyInside(x)) return;
     for (int r = 0; r < kStripes; ++r) {
       cost->v[r] = PixelCost<kKind>(plan_, left_ + x, counterparts_, r);
       if (!layout_.full) cost->v[r] = Simd::Max(cost->v[r], layout_.least.v[r]);

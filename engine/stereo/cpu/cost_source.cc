@@ -42,8 +42,7 @@ const uint8_t* CostSource::Row(int y) {
   for (int k = 0; k < plan_->window_height; ++k) {
     window_[k] = Sums(std::clamp(top + k, 0, plan_->height - 1));
   }
-  kernels_->window_row(*plan_, {.y = y,
-                                .begin = begin_,
+  kernels_->window_row(*plan_, {.begin = begin_,
                                 .end = end_,
                                 .sums = window_.data(),
                                 .row = row,

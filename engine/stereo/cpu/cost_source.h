@@ -17,7 +17,7 @@ class CostSource {
   // Row y, smoothed along the row if the plan says so; valid until a row more than one away is
   // asked for.
   const uint8_t* Row(int y);
-  size_t Bytes() const { return rows_.Bytes() + window_rows_.Bytes(); }
+  size_t Bytes() const { return rows_.Bytes() + window_rows_.Bytes() + like_before_.size(); }
 
  private:
   bool HasWindow() const { return plan_->window_width * plan_->window_height > 1; }

@@ -55,7 +55,8 @@ struct Plan {
   int window_width = 1;
   int window_height = 1;
   int gate = -1;  // smooth_cost_gate; -1: the costs are not smoothed
-  // The left picture as the camera saw it, going on beyond its border.
+  // The left picture as the camera saw it, going on beyond its border: for whoever asks for
+  // penalties and likeness.
   const uint8_t* guide = nullptr;
   size_t guide_stride = 0;
   uint8_t p1 = 0;
@@ -85,10 +86,9 @@ struct WindowSums {
   uint16_t* sums = nullptr;  // one for each byte of a cell
 };
 
-// Costs of row y for the columns [begin, end) from the sums of the window's rows, smoothed along
+// Costs of a row for the columns [begin, end) from the sums of the window's rows, smoothed along
 // the row like CostRow.
 struct WindowRow {
-  int y = 0;
   int begin = 0;
   int end = 0;
   const uint16_t* const* sums = nullptr;  // window_height rows

@@ -45,8 +45,8 @@ struct Simd {
   using Exception = uint64_t;  // the other lanes
   static constexpr Exception kNoException = ~0ULL;
   static constexpr Exception Except(int lane) { return ~(1ULL << lane); }
-  static V MinBut(V a, V b, Exception excepted) {
-    return {_mm512_mask_min_epu8(a.v, excepted, a.v, b.v)};
+  static V MinBut(V a, V b, Exception others) {
+    return {_mm512_mask_min_epu8(a.v, others, a.v, b.v)};
   }
 
   static V FromBelow(V a, uint8_t guard) {

@@ -134,8 +134,8 @@ TEST(Remap, GivesAPixelTheSameValueWhereverItsNeighboursLie) {
         static_cast<int16_t>(random() % 88), static_cast<int16_t>(random() % 68),
         static_cast<uint8_t>(random() % 32), static_cast<uint8_t>(random() % 32)};
     fixed.sources.push_back(source);
-    exact.positions.push_back({source.x + static_cast<float>(source.x_part) / 32,
-                               source.y + static_cast<float>(source.y_part) / 32});
+    const auto part = [&random] { return static_cast<float>(random() % 1000) / 1000; };
+    exact.positions.push_back({source.x + part(), source.y + part()});
   }
   for (int k = 0; k < 130; ++k) {  // the second row: every third one lies outside
     fixed.sources.push_back(k % 3 == 0 ? RemapTable::Source{-20, 5, 0, 0} : fixed.sources[k]);
