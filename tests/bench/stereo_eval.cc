@@ -1,12 +1,14 @@
 // How exact the matcher is on pairs of pictures with ground truth.
 //
 //   stereo_eval --data DIR [--preset NAME] [--set FIELD=VALUE ...] [--backend NAME] [--threads N]
-//               [--noise SIGMA] [--right-gain FACTOR] [--write OUT] [--peers] [--ablation] [--json]
+//               [--noise SIGMA] [--right-gain FACTOR] [--write OUT] [--peers] [--ablation]
+//               [--rounds N] [--json]
 //   stereo_eval --import-aloe DIR      writes the pair of Debian's opencv-doc as a scene
 //
 // DIR holds a folder for each scene: left.png, right.png, disp.png (16 bit, disparity in px = value
 // / 256, 0 = unknown), nonocc.png (255 = seen by both cameras) and meta.json (name,
 // num_disparities). All settings are the same for all scenes but the range, which is the scene's.
+// The time is the median of the rounds; in each round all variants take their turn.
 // Percentages are of the pixels that both cameras see and whose truth is known.
 #include <algorithm>
 #include <chrono>
@@ -40,6 +42,7 @@ struct Options {
   std::vector<std::string> set;
   std::string backend = "auto";
   int threads = 2;
+  int rounds = 1;
   std::string write;
   std::string import_aloe;
   double noise = 0;
@@ -240,6 +243,35 @@ Result<SgmSettings> SettingsOf(const Options& options, const Variant& variant) {
   return settings;
 }
 
+// A variant on one scene.
+struct Turn {
+  std::string name;
+  SgmSettings settings;
+  DisparityMap map;
+  std::vector<double> times_ms;
+};
+
+// Matches twice: the first time asks for memory and gets the caches used to these settings.
+Status Take(const StereoScene& scene, StereoMatcher& matcher, int threads, BufferPool& pool,
+            Turn* turn) {
+  double ms = 0;
+  for (int run = 0; run < 2; ++run) {
+    const auto begin = std::chrono::steady_clock::now();
+    VS_ASSIGN_OR_RETURN(turn->map,
+                        matcher.Match(scene.left, scene.right, turn->settings, threads, pool));
+    ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  }
+  turn->times_ms.push_back(ms);
+  return Status();
+}
+
+double MedianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 Status EvaluateScene(const Options& options, const std::filesystem::path& folder,
                      StereoMatcher& matcher, BufferPool& pool, Table* table) {
   VS_ASSIGN_OR_RETURN(StereoScene scene, LoadStereoScene(folder, pool));
@@ -247,23 +279,23 @@ Status EvaluateScene(const Options& options, const std::filesystem::path& folder
     scene.left = Disturbed(scene.left, 1, options.noise, 1, pool);
     scene.right = Disturbed(scene.right, options.right_gain, options.noise, 2, pool);
   }
+  std::vector<Turn> turns;
   for (const Variant& variant : VariantsOf(options)) {
-    VS_ASSIGN_OR_RETURN(SgmSettings settings, SettingsOf(options, variant));
-    settings.num_disparities = scene.num_disparities;
-    double ms = 0;
-    DisparityMap map;
-    for (int run = 0; run < 2; ++run) {  // the first one asks for memory
-      const auto begin = std::chrono::steady_clock::now();
-      VS_ASSIGN_OR_RETURN(map,
-                          matcher.Match(scene.left, scene.right, settings, options.threads, pool));
-      ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
-               .count();
+    VS_ASSIGN_OR_RETURN(const SgmSettings settings, SettingsOf(options, variant));
+    turns.push_back({.name = variant.name, .settings = settings});
+    turns.back().settings.num_disparities = scene.num_disparities;
+  }
+  for (int round = 0; round < options.rounds; ++round) {
+    for (Turn& turn : turns) {
+      VS_RETURN_IF_ERROR(Take(scene, matcher, options.threads, pool, &turn));
     }
-    table->Add(scene.name, variant.name, ScoreOf(map, scene, ms, pool));
+  }
+  for (const Turn& turn : turns) {
+    table->Add(scene.name, turn.name, ScoreOf(turn.map, scene, MedianOf(turn.times_ms), pool));
     if (!options.write.empty()) {
       const auto path =
           std::filesystem::path(options.write) / (folder.filename().string() + ".png");
-      VS_RETURN_IF_ERROR(WriteMap(map, path, pool));
+      VS_RETURN_IF_ERROR(WriteMap(turn.map, path, pool));
     }
   }
   if (!options.peers) return Status();
@@ -299,6 +331,9 @@ int Main(int argc, char** argv) {
   app.add_option("--set", options.set, "A setting: FIELD=VALUE");
   app.add_option("--backend", options.backend, "Which matcher")->capture_default_str();
   app.add_option("--threads", options.threads)->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--rounds", options.rounds, "How often each is timed")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   app.add_option("--write", options.write, "Folder that takes the maps");
   app.add_option("--import-aloe", options.import_aloe,
                  "Write the aloe pair of Debian's opencv-doc to this folder as a scene");
