@@ -20,15 +20,18 @@ void PrintUser(const v1::User& user) {
   PrintLine(user.name() + ": " + RoleWord(user.role()) + (user.disabled() ? ", disabled" : ""));
 }
 
+std::string StateWord(const v1::User& user) {
+  if (user.disabled()) return "disabled";
+  if (user.has_locked_until()) return "locked until " + TimeText(user.locked_until());
+  return user.must_change_password() ? "one-time password" : "active";
+}
+
 Result<void> List(Session& session) {
   return Show(session, Ask(session, &Stub::ListUsers, {}),
               [](const v1::ListUsersResponse& response) {
                 Table table({"USER", "ROLE", "FULL NAME", "STATE", "LAST LOGIN"});
                 for (const v1::User& user : response.users()) {
-                  table.Add({user.name(), RoleWord(user.role()), user.full_name(),
-                             user.disabled()               ? "disabled"
-                             : user.must_change_password() ? "one-time password"
-                                                           : "active",
+                  table.Add({user.name(), RoleWord(user.role()), user.full_name(), StateWord(user),
                              TimeText(user.last_login())});
                 }
                 table.Print("There are no users.");
@@ -78,6 +81,11 @@ Result<void> ResetPassword(Session& session, const std::string& name) {
                 PrintLine("one-time password of " + name +
                           ", valid for 24 hours: " + response.one_time_password());
               });
+}
+
+Result<void> Unlock(Session& session, const std::string& name) {
+  return Show(session, Ask(session, &Stub::UnlockUser, ForUser<v1::UnlockUserRequest>(name)),
+              [](const v1::User& user) { PrintLine(user.name() + " may log in again."); });
 }
 
 Result<void> Sessions(Session& session, const std::string& user) {
@@ -134,6 +142,11 @@ void AddUserCommands(CommandLine& line) {
   Command& reset = line.Add("users reset-password", "Give a user a new one-time password");
   const auto reset_user = reset.Positional("NAME", whom);
   reset.Run([=](Session& session) { return ResetPassword(session, *reset_user); });
+
+  Command& unlock =
+      line.Add("users unlock", "Let a user log in again whom failed logins have locked out");
+  const auto unlocked = unlock.Positional("NAME", whom);
+  unlock.Run([=](Session& session) { return Unlock(session, *unlocked); });
 
   Command& sessions = line.Add("users sessions", "Show who is logged in");
   const auto of = sessions.Text("--user", "NAME", "Only this user's");

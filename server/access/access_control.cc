@@ -89,7 +89,7 @@ Result<AccessControl::LoggedIn> AccessControl::LogIn(const std::string& name,
     LogInfo("access", Str("failed login of \"", name, "\" from ", address));
     return Unauthenticated("user name or password is wrong").WithReason("WRONG_CREDENTIALS");
   }
-  throttle_.Succeeded(folded);
+  throttle_.Forget(folded);
   VS_ASSIGN_OR_RETURN(Sessions::Created session, sessions_->Create(user->name, address, client));
   ++logins_;
   LogInfo("access", Str(user->name, " logged in from ", address));
@@ -107,6 +107,13 @@ Status AccessControl::ChangePassword(const Caller& caller, const std::string& ol
   VS_RETURN_IF_ERROR(changed);
   LogInfo("access", Str(caller.name, " changed the password, from ", address));
   return sessions_->RemoveOf(caller.name, caller.credential_id);
+}
+
+Result<UserRecord> AccessControl::Unlock(const std::string& name) {
+  std::optional<UserRecord> user = accounts_->FindUser(name);
+  if (!user) return NotFound(Str("there is no user ", Quoted(name)));
+  throttle_.Forget(user->name);
+  return *std::move(user);
 }
 
 }  // namespace vs

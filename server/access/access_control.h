@@ -49,6 +49,13 @@ class AccessControl final : public Gatekeeper {
   Status ChangePassword(const Caller& caller, const std::string& old_password,
                         const std::string& new_password, const std::string& address);
 
+  // Until when failed logins keep this user out, in UTC; 0 when they do not.
+  int64_t LockedUntilUtcNs(const std::string& user) const {
+    return throttle_.LockedUntilUtcNs(user);
+  }
+  // NOT_FOUND. The password stays.
+  Result<UserRecord> Unlock(const std::string& name);
+
   Accounts& accounts() { return *accounts_; }
   Sessions& sessions() { return *sessions_; }
   const PasswordHasher& hasher() const { return hasher_; }

@@ -51,12 +51,20 @@ Status LoginThrottle::CheckAddress(const std::string& address) const {
 }
 
 Status LoginThrottle::CheckAccount(const std::string& name) const {
+  const int64_t wait_ns = LockedForNs(name);
+  return wait_ns == 0 ? Status() : Wait(static_cast<double>(wait_ns) / kSecondNs);
+}
+
+int64_t LoginThrottle::LockedForNs(const std::string& name) const {
   MutexLock lock(mutex_);
   const auto found = accounts_.find(name);
-  if (found == accounts_.end()) return Status();
-  const int64_t wait_ns = found->second.blocked_until_ns - clock_.MonotonicNs();
-  if (wait_ns <= 0) return Status();
-  return Wait(static_cast<double>(wait_ns) / kSecondNs);
+  if (found == accounts_.end()) return 0;
+  return std::max(int64_t{0}, found->second.blocked_until_ns - clock_.MonotonicNs());
+}
+
+int64_t LoginThrottle::LockedUntilUtcNs(const std::string& name) const {
+  const int64_t wait_ns = LockedForNs(name);
+  return wait_ns == 0 ? 0 : clock_.UtcNs() + wait_ns;
 }
 
 void LoginThrottle::Failed(const std::string& name, const std::string& address) {
@@ -80,7 +88,7 @@ void LoginThrottle::Failed(const std::string& name, const std::string& address) 
   source.last_ns = now_ns;
 }
 
-void LoginThrottle::Succeeded(const std::string& name) {
+void LoginThrottle::Forget(const std::string& name) {
   MutexLock lock(mutex_);
   accounts_.erase(name);
 }

@@ -23,7 +23,11 @@ class LoginThrottle {
   Status CheckAccount(const std::string& name) const;
 
   void Failed(const std::string& name, const std::string& address);
-  void Succeeded(const std::string& name);
+
+  // Forgets the failures of an account: after a login, or because an administrator says so.
+  void Forget(const std::string& name);
+  // Until when the account takes no password, in UTC; 0 when it does take one.
+  int64_t LockedUntilUtcNs(const std::string& name) const;
 
  private:
   struct Account {
@@ -36,6 +40,7 @@ class LoginThrottle {
     int64_t last_ns = 0;
   };
   double FailuresNow(const Address& address) const;
+  int64_t LockedForNs(const std::string& name) const VS_EXCLUDES(mutex_);
 
   const Clock& clock_;
   mutable Mutex mutex_;

@@ -40,6 +40,7 @@ constexpr auto kRules = std::to_array<AccessRule>({
     {"/visionserver.v1.UserService/UpdateUser", kAdmin},
     {"/visionserver.v1.UserService/DeleteUser", kAdmin},
     {"/visionserver.v1.UserService/ResetPassword", kAdmin},
+    {"/visionserver.v1.UserService/UnlockUser", kAdmin},
     {"/visionserver.v1.UserService/ListSessions", kAdmin},
     {"/visionserver.v1.UserService/CreateApiKey", kAdmin},
     {"/visionserver.v1.UserService/ListApiKeys", kAdmin},
@@ -81,6 +82,7 @@ constexpr auto kRules = std::to_array<AccessRule>({
 
     {"/visionserver.v1.ResultService/ListResults", kEverybody},
     {"/visionserver.v1.ResultService/GetResult", kEverybody},
+    {"/visionserver.v1.ResultService/GetResultFile", kEverybody},
     {"/visionserver.v1.ResultService/QueryResults", kEverybody},
     {"/visionserver.v1.ResultService/ExportResults", kEverybody},
     {"/visionserver.v1.ResultService/WatchResults", kEverybody},
@@ -89,6 +91,8 @@ constexpr auto kRules = std::to_array<AccessRule>({
     {"/visionserver.v1.SystemService/GetStatistics", kViewer},
     {"/visionserver.v1.SystemService/GetResources", kViewer},
     {"/visionserver.v1.SystemService/ListAlarms", kEverybody},
+
+    {"/visionserver.v1.AuditService/ListAuditEntries", kAdmin},
 
     Anybody("/grpc.health.v1.Health/Check"),
     {"/grpc.health.v1.Health/Watch", kEverybody},

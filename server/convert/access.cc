@@ -42,7 +42,7 @@ Result<Role> FromProto(pb::Role role) {
   }
 }
 
-pb::User ToProto(const UserRecord& user) {
+pb::User ToProto(const UserRecord& user, int64_t locked_until_utc_ns) {
   pb::User proto;
   proto.set_name(user.name);
   proto.set_full_name(user.full_name);
@@ -53,6 +53,7 @@ pb::User ToProto(const UserRecord& user) {
   if (user.last_login_utc_ns != 0)
     *proto.mutable_last_login() = ToTimestamp(user.last_login_utc_ns);
   proto.set_etag(std::to_string(user.revision));
+  if (locked_until_utc_ns != 0) *proto.mutable_locked_until() = ToTimestamp(locked_until_utc_ns);
   return proto;
 }
 

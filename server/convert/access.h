@@ -13,7 +13,8 @@ visionserver::v1::Role ToProto(Role role);
 // INVALID_ARGUMENT for ROLE_UNSPECIFIED and numbers that are no role.
 Result<Role> FromProto(visionserver::v1::Role role);
 
-visionserver::v1::User ToProto(const UserRecord& user);
+// `locked_until_utc_ns`: as AccessControl::LockedUntilUtcNs.
+visionserver::v1::User ToProto(const UserRecord& user, int64_t locked_until_utc_ns);
 visionserver::v1::ApiKey ToProto(const Accounts::ApiKeyInfo& key);
 // `role`: of the session's user now; `current_id`: of the session that asks.
 visionserver::v1::Session ToProto(const SessionInfo& session, Role role,

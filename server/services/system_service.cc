@@ -1,5 +1,7 @@
 #include "server/services/system_service.h"
 
+#include <set>
+#include <string>
 #include <utility>
 
 #include "server/convert/time.h"
@@ -59,6 +61,9 @@ Result<pb::GetStatisticsResponse> SystemService::GetStatistics(
   response.set_sessions(access_.sessions().Count());
   response.set_logins(access_.logins());
   response.set_logins_failed(access_.failed_logins());
+  std::set<std::string> online;
+  for (const SessionInfo& session : access_.sessions().List("")) online.insert(session.record.user);
+  for (const std::string& user : online) response.add_users_online(user);
   for (const MethodStats& stats : dispatcher_->Statistics()) {
     pb::MethodStatistics* method = response.add_methods();
     method->set_method(stats.method);

@@ -32,6 +32,10 @@ void Record(const Call& call, const std::string& what) {
 
 }  // namespace
 
+pb::User UserService::Shown(const UserRecord& user) const {
+  return ToProto(user, access_.LockedUntilUtcNs(user.name));
+}
+
 void UserService::Register(Router& router) {
   const MethodOptions hashing = {.lane = Lane::kPassword, .max_request_bytes = 4096};
   const std::string prefix = "/visionserver.v1.UserService/";
@@ -40,6 +44,7 @@ void UserService::Register(Router& router) {
   router.Unary(prefix + "UpdateUser", this, &UserService::UpdateUser);
   router.Unary(prefix + "DeleteUser", this, &UserService::DeleteUser);
   router.Unary(prefix + "ResetPassword", this, &UserService::ResetPassword, hashing);
+  router.Unary(prefix + "UnlockUser", this, &UserService::UnlockUser);
   router.Unary(prefix + "ListSessions", this, &UserService::ListSessions);
   router.Unary(prefix + "CreateApiKey", this, &UserService::CreateApiKey);
   router.Unary(prefix + "ListApiKeys", this, &UserService::ListApiKeys);
@@ -49,7 +54,7 @@ void UserService::Register(Router& router) {
 Result<pb::ListUsersResponse> UserService::ListUsers(const Call& /*call*/,
                                                      const pb::ListUsersRequest& /*request*/) {
   pb::ListUsersResponse response;
-  for (const UserRecord& user : access_.accounts().Users()) *response.add_users() = ToProto(user);
+  for (const UserRecord& user : access_.accounts().Users()) *response.add_users() = Shown(user);
   return response;
 }
 
@@ -63,7 +68,7 @@ Result<pb::CreateUserResponse> UserService::CreateUser(const Call& call,
   Record(call, Str("created the user ", request.name(), " as ", RoleName(role)));
   pb::CreateUserResponse response;
   if (const auto user = access_.accounts().FindUser(request.name())) {
-    *response.mutable_user() = ToProto(*user);
+    *response.mutable_user() = Shown(*user);
   }
   response.set_one_time_password(password);
   return response;
@@ -82,7 +87,7 @@ Result<pb::User> UserService::UpdateUser(const Call& call, const pb::UpdateUserR
   Record(call, Str("changed the user ", user.name, ": ", RoleName(user.role),
                    user.disabled ? ", disabled" : ""));
   if (user.disabled) VS_RETURN_IF_ERROR(access_.sessions().RemoveOf(user.name));
-  return ToProto(user);
+  return Shown(user);
 }
 
 Result<pb::DeleteUserResponse> UserService::DeleteUser(const Call& call,
@@ -101,6 +106,12 @@ Result<pb::ResetPasswordResponse> UserService::ResetPassword(
   pb::ResetPasswordResponse response;
   response.set_one_time_password(password);
   return response;
+}
+
+Result<pb::User> UserService::UnlockUser(const Call& call, const pb::UnlockUserRequest& request) {
+  VS_ASSIGN_OR_RETURN(const UserRecord user, access_.Unlock(request.name()));
+  Record(call, Str("unlocked the user ", user.name));
+  return Shown(user);
 }
 
 Result<pb::ListSessionsResponse> UserService::ListSessions(const Call& call,

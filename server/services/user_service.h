@@ -25,6 +25,8 @@ class UserService {
       const Call& call, const visionserver::v1::DeleteUserRequest& request);
   Result<visionserver::v1::ResetPasswordResponse> ResetPassword(
       const Call& call, const visionserver::v1::ResetPasswordRequest& request);
+  Result<visionserver::v1::User> UnlockUser(const Call& call,
+                                            const visionserver::v1::UnlockUserRequest& request);
   Result<visionserver::v1::ListSessionsResponse> ListSessions(
       const Call& call, const visionserver::v1::ListSessionsRequest& request);
   Result<visionserver::v1::CreateApiKeyResponse> CreateApiKey(
@@ -33,6 +35,8 @@ class UserService {
       const Call& call, const visionserver::v1::ListApiKeysRequest& request);
   Result<visionserver::v1::RevokeApiKeyResponse> RevokeApiKey(
       const Call& call, const visionserver::v1::RevokeApiKeyRequest& request);
+
+  visionserver::v1::User Shown(const UserRecord& user) const;
 
   AccessControl& access_;
 };

@@ -153,6 +153,16 @@ TEST_F(AccountsTest, PasswordsAreChangedAndReset) {
   EXPECT_EQ(4, ana({"whoami"}).exit_code);
 }
 
+TEST_F(AccountsTest, LockedUsersAreUnlocked) {
+  server_.AddUser("ana", Role::kViewer);
+  const Visionctl ana(Options());
+  for (int i = 0; i < 5; ++i) ana({"login", "ana", "--password-stdin"}, "wrong password\n");
+  LogInAsAdmin();
+  EXPECT_THAT(visionctl_({"users", "unlock", "ana"}).output, HasSubstr("ana may log in again"));
+  LogIn(ana, "ana");
+  EXPECT_EQ(5, visionctl_({"users", "unlock", "nobody"}).exit_code);
+}
+
 TEST_F(AccountsTest, KeysLetMachinesInUntilTheyAreRevoked) {
   LogInAsAdmin();
   const FinishedProcess made = visionctl_({"keys", "create", "robot cell 7", "--json"});

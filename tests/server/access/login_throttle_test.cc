@@ -42,6 +42,16 @@ TEST_F(LoginThrottleTest, DoublesTheWaitFromTheFifthFailure) {
   EXPECT_THAT(throttle_.CheckAccount("maria").message(), HasSubstr("in 4 s"));
 }
 
+TEST_F(LoginThrottleTest, TellsUntilWhenAnAccountIsLocked) {
+  Fail(4, "maria", "10.0.0.1");
+  EXPECT_EQ(throttle_.LockedUntilUtcNs("maria"), 0);
+  Fail(2, "maria", "10.0.0.1");
+  EXPECT_EQ(throttle_.LockedUntilUtcNs("maria"), clock_.UtcNs() + 2'000'000'000);
+  clock_.Advance(seconds(2));
+  EXPECT_EQ(throttle_.LockedUntilUtcNs("maria"), 0);
+  EXPECT_EQ(throttle_.LockedUntilUtcNs("nobody"), 0);
+}
+
 TEST_F(LoginThrottleTest, NeverWaitsLongerThanAQuarterOfAnHour) {
   for (int i = 0; i < 100; ++i) Fail(1, "maria", Str("10.0.0.", i));
   EXPECT_THAT(throttle_.CheckAccount("maria").message(), HasSubstr("in 900 s"));
@@ -49,9 +59,9 @@ TEST_F(LoginThrottleTest, NeverWaitsLongerThanAQuarterOfAnHour) {
   EXPECT_TRUE(throttle_.CheckAccount("maria").ok());
 }
 
-TEST_F(LoginThrottleTest, ForgetsFailuresAfterASuccessOrAnHour) {
+TEST_F(LoginThrottleTest, ForgetsFailuresWhenToldOrAfterAnHour) {
   Fail(5, "maria", "10.0.0.1");
-  throttle_.Succeeded("maria");
+  throttle_.Forget("maria");
   EXPECT_TRUE(throttle_.CheckAccount("maria").ok());
 
   Fail(5, "ben", "10.0.0.1");

@@ -22,6 +22,7 @@ constexpr const char* kTable =
     "UserService/UpdateUser A\n"
     "UserService/DeleteUser A\n"
     "UserService/ResetPassword A\n"
+    "UserService/UnlockUser A\n"
     "UserService/ListSessions A\n"
     "UserService/CreateApiKey A\n"
     "UserService/ListApiKeys A\n"
@@ -57,6 +58,7 @@ constexpr const char* kTable =
     "CameraService/WatchCameras VOEAR\n"
     "ResultService/ListResults VOEAR\n"
     "ResultService/GetResult VOEAR\n"
+    "ResultService/GetResultFile VOEAR\n"
     "ResultService/QueryResults VOEAR\n"
     "ResultService/ExportResults VOEAR\n"
     "ResultService/WatchResults VOEAR\n"
@@ -64,6 +66,7 @@ constexpr const char* kTable =
     "SystemService/GetStatistics VOEA\n"
     "SystemService/GetResources VOEA\n"
     "SystemService/ListAlarms VOEAR\n"
+    "AuditService/ListAuditEntries A\n"
     "Health/Check VOEAR*+\n"
     "Health/Watch VOEAR\n"
     "ServerReflection/ServerReflectionInfo EA\n";

@@ -335,5 +335,40 @@ TEST_F(SessionServiceTest, FloodOfLoginsIsBoundedAndOthersAreServed) {
   EXPECT_EQ(server_->access().failed_logins(), 5U);
 }
 
+TEST_F(SessionServiceTest, LockedUserIsShownAndUnlocked) {
+  const std::string admin = server_.Token(Role::kAdmin);
+  server_.AddUser("maria", Role::kOperator);
+  const std::string password = TestServer::kPassword;
+  pb::LoginResponse login;
+  for (int i = 0; i < 7; ++i) Login("maria", "wrong", &login);
+  EXPECT_EQ(Login("maria", password, &login).error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+
+  const auto listed = [&] {
+    pb::ListUsersResponse users;
+    EXPECT_TRUE(users_->ListUsers(ClientCall(admin).context(), {}, &users).ok());
+    for (const pb::User& user : users.users()) {
+      if (user.name() == "maria") return user;
+    }
+    return pb::User();
+  };
+  // The fifth failure locks for a second; the clock stands still, so there is no sixth.
+  EXPECT_EQ(listed().locked_until().seconds(), clock_.UtcNs() / 1'000'000'000 + 1);
+
+  pb::UnlockUserRequest request;
+  request.set_name("Maria");
+  pb::User user;
+  EXPECT_EQ(users_->UnlockUser(ClientCall(login.token()).context(), request, &user).error_code(),
+            grpc::StatusCode::UNAUTHENTICATED);
+  ASSERT_TRUE(users_->UnlockUser(ClientCall(admin).context(), request, &user).ok());
+  EXPECT_EQ(user.name(), "maria");
+  EXPECT_FALSE(user.has_locked_until());
+  EXPECT_FALSE(listed().has_locked_until());
+  EXPECT_TRUE(Login("maria", password, &login).ok());
+
+  request.set_name("nobody");
+  EXPECT_EQ(users_->UnlockUser(ClientCall(admin).context(), request, &user).error_code(),
+            grpc::StatusCode::NOT_FOUND);
+}
+
 }  // namespace
 }  // namespace vs

@@ -4,6 +4,7 @@
 
 #include "grpc/health/v1/health.grpc.pb.h"
 #include "grpc/reflection/v1alpha/reflection.grpc.pb.h"
+#include "visionserver/v1/session.grpc.pb.h"
 #include "visionserver/v1/system.grpc.pb.h"
 #include <google/protobuf/descriptor.pb.h>
 
@@ -21,6 +22,7 @@ namespace reflection = grpc::reflection::v1alpha;
 using test::ClientCall;
 using test::TestServer;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 // The services about the server itself, over the network.
@@ -61,6 +63,23 @@ TEST_F(SystemServiceTest, CountsCallsAndConnections) {
   EXPECT_EQ(statistics.methods(0).method(), "/visionserver.v1.SystemService/GetServerInfo");
   EXPECT_EQ(statistics.methods(0).succeeded(), 3U);
   EXPECT_GE(statistics.methods(0).max_us(), statistics.methods(0).mean_us());
+}
+
+TEST_F(SystemServiceTest, TellsEverybodyWhoIsOnline) {
+  const std::string viewer = server_.Token(Role::kViewer);
+  server_.Token(Role::kViewer);  // a second session of the same user
+  const std::string engineer = server_.Token(Role::kEngineer);
+  const auto online = [&] {
+    pb::GetStatisticsResponse statistics;
+    EXPECT_TRUE(system_->GetStatistics(ClientCall(viewer).context(), {}, &statistics).ok());
+    return std::vector<std::string>(statistics.users_online().begin(),
+                                    statistics.users_online().end());
+  };
+  EXPECT_THAT(online(), ElementsAre("test.engineer", "test.viewer"));
+  const auto sessions = pb::SessionService::NewStub(channel_);
+  pb::LogoutResponse response;
+  ASSERT_TRUE(sessions->Logout(ClientCall(engineer).context(), {}, &response).ok());
+  EXPECT_THAT(online(), ElementsAre("test.viewer"));
 }
 
 TEST_F(SystemServiceTest, KnowsTheMachine) {
