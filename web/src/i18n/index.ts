@@ -1,0 +1,47 @@
+import i18next from 'i18next';
+import { initReactI18next } from 'react-i18next';
+import { texts } from './texts';
+
+const kStorageKey = 'visionserver.language';
+
+/** The languages that all texts exist in. */
+export const languages = ['en', 'de'] as const;
+export type Language = (typeof languages)[number];
+
+function isLanguage(text: string | null | undefined): text is Language {
+  return languages.some((language) => language === text);
+}
+
+/** What was chosen here before, else what the browser asks for, else English. */
+function initialLanguage(): Language {
+  const stored = localStorage.getItem(kStorageKey);
+  if (isLanguage(stored)) return stored;
+  return navigator.languages.map((tag) => tag.slice(0, 2)).find(isLanguage) ?? 'en';
+}
+
+function resources(language: Language) {
+  return Object.fromEntries(
+    Object.entries(texts).map(([folder, module]) => [folder, module[language]]),
+  );
+}
+
+/** Chooses the language of the page and remembers it. */
+export async function setLanguage(language: Language): Promise<void> {
+  localStorage.setItem(kStorageKey, language);
+  await i18next.changeLanguage(language);
+}
+
+i18next.on('languageChanged', (language) => {
+  document.documentElement.lang = language;
+});
+
+await i18next.use(initReactI18next).init({
+  lng: initialLanguage(),
+  fallbackLng: 'en',
+  ns: Object.keys(texts),
+  defaultNS: 'shell',
+  resources: { en: resources('en'), de: resources('de') },
+  interpolation: { escapeValue: false }, // React escapes
+});
+
+export { i18next };
