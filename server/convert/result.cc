@@ -1,5 +1,6 @@
 #include "server/convert/result.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -45,6 +46,38 @@ pb::ResultClass ToProto(ResultRecord::Class result_class) {
   return pb::RESULT_CLASS_UNSPECIFIED;
 }
 
+Result<std::optional<ResultRecord::Class>> FromProto(pb::ResultClass result_class) {
+  using Class = std::optional<ResultRecord::Class>;
+  switch (result_class) {
+    case pb::RESULT_CLASS_UNSPECIFIED:
+      return Class();
+    case pb::RESULT_CLASS_PASS:
+      return Class(ResultRecord::Class::kPass);
+    case pb::RESULT_CLASS_WARN:
+      return Class(ResultRecord::Class::kWarn);
+    case pb::RESULT_CLASS_FAIL:
+      return Class(ResultRecord::Class::kFail);
+    default:
+      return InvalidArgument(Str("there is no result class ", int{result_class}));
+  }
+}
+
+Result<std::optional<ResultRecord::State>> FromProto(pb::ResultState state) {
+  using State = std::optional<ResultRecord::State>;
+  switch (state) {
+    case pb::RESULT_STATE_UNSPECIFIED:
+      return State();
+    case pb::RESULT_STATE_COMPLETED:
+      return State(ResultRecord::State::kCompleted);
+    case pb::RESULT_STATE_ABORTED:
+      return State(ResultRecord::State::kAborted);
+    case pb::RESULT_STATE_FAILED:
+      return State(ResultRecord::State::kFailed);
+    default:
+      return InvalidArgument(Str("there is no result state ", int{state}));
+  }
+}
+
 }  // namespace
 
 pb::Result ToProto(const StoredResult& stored) {
@@ -78,21 +111,9 @@ Result<ResultFilter> FromProto(const pb::ResultFilter& filter) {
   ResultFilter result{.job_id = filter.job_id(), .part_id = filter.part_id()};
   if (filter.has_from()) result.from_ns = ToUtcNs(filter.from());
   if (filter.has_until()) result.until_ns = ToUtcNs(filter.until());
-  switch (filter.result_class()) {
-    case pb::RESULT_CLASS_UNSPECIFIED:
-      return result;
-    case pb::RESULT_CLASS_PASS:
-      result.result_class = ResultRecord::Class::kPass;
-      return result;
-    case pb::RESULT_CLASS_WARN:
-      result.result_class = ResultRecord::Class::kWarn;
-      return result;
-    case pb::RESULT_CLASS_FAIL:
-      result.result_class = ResultRecord::Class::kFail;
-      return result;
-    default:
-      return InvalidArgument(Str("there is no result class ", int{filter.result_class()}));
-  }
+  VS_ASSIGN_OR_RETURN(result.result_class, FromProto(filter.result_class()));
+  VS_ASSIGN_OR_RETURN(result.result_state, FromProto(filter.result_state()));
+  return result;
 }
 
 pb::Table ToProto(const SqlTable& table) {

@@ -52,6 +52,9 @@ class Where {
     } else if (filter.result_class) {
       Add("result_class = ?", std::string(ResultClassName(*filter.result_class)));
     }
+    if (filter.result_state) {
+      Add("result_state = ?", std::string(ResultStateName(*filter.result_state)));
+    }
     if (filter.from_ns) Add("creation_time_ns >= ?", *filter.from_ns);
     if (filter.until_ns) Add("creation_time_ns < ?", *filter.until_ns);
   }

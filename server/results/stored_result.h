@@ -29,6 +29,7 @@ struct ResultFilter {
   std::string job_id;   // empty = all
   std::string part_id;  // empty = all
   std::optional<ResultRecord::Class> result_class;
+  std::optional<ResultRecord::State> result_state;
   std::optional<int64_t> from_ns;   // created at or after, UTC
   std::optional<int64_t> until_ns;  // created before, UTC
 };

@@ -15,6 +15,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using Class = ResultRecord::Class;
+using State = ResultRecord::State;
 
 // One second more at each look.
 class SteppingClock final : public Clock {
@@ -35,14 +36,19 @@ class ResultReaderTest : public ::testing::Test {
       const char* job;
       const char* part;
       Class result_class;
-    } rows[] = {{"weld", "a", Class::kPass},     {"weld", "b", Class::kFail},
-                {"glue", "a", Class::kPass},     {"weld", "a", Class::kFail},
-                {"glue", "", Class::kUndefined}, {"weld", "c", Class::kPass}};
+      State state = State::kCompleted;
+    } rows[] = {{"weld", "a", Class::kPass},
+                {"weld", "b", Class::kFail, State::kAborted},
+                {"glue", "a", Class::kPass},
+                {"weld", "a", Class::kFail},
+                {"glue", "", Class::kUndefined, State::kFailed},
+                {"weld", "c", Class::kPass}};
     for (const auto& row : rows) {
       ResultRecord record;
       record.job_id = row.job;
       record.part_id = row.part;
       record.result_class = row.result_class;
+      record.state = row.state;
       ids_.push_back(store->Log(record).value());
     }
     store.reset();
@@ -81,6 +87,10 @@ TEST_F(ResultReaderTest, AllConditionsOfAFilterHoldAtOnce) {
               ElementsAre(5));
   EXPECT_THAT(Numbers(reader_->After(
                   {.job_id = "weld", .part_id = "a", .result_class = Class::kFail}, 0, 9, 9)),
+              ElementsAre(4));
+  EXPECT_THAT(Numbers(reader_->After({.result_state = State::kFailed}, 0, 9, 9)), ElementsAre(5));
+  EXPECT_THAT(Numbers(reader_->After(
+                  {.result_class = Class::kFail, .result_state = State::kCompleted}, 0, 9, 9)),
               ElementsAre(4));
   // Number 2 was created at 1001 s, number 4 at 1003 s.
   EXPECT_THAT(Numbers(reader_->After({.from_ns = 1'001'000'000'000, .until_ns = 1'003'000'000'000},

@@ -54,6 +54,13 @@ TEST_F(ResultApi, WhatASequenceLogsIsWatchedListedQueriedAndExported) {
   list.set_page_token(page.next_page_token());
   ASSERT_TRUE(results_->ListResults(ClientCall(operator_).context(), list, &page).ok());
   EXPECT_EQ(oldest - 1, page.results(0).number());
+  list.clear_page_token();
+  list.mutable_filter()->set_result_state(pb::RESULT_STATE_COMPLETED);
+  ASSERT_TRUE(results_->ListResults(ClientCall(operator_).context(), list, &page).ok());
+  EXPECT_EQ(20, page.results_size());
+  list.mutable_filter()->set_result_state(pb::RESULT_STATE_FAILED);
+  ASSERT_TRUE(results_->ListResults(ClientCall(operator_).context(), list, &page).ok());
+  EXPECT_EQ(0, page.results_size());
 
   pb::QueryResultsRequest query;
   query.set_sql("SELECT count(*) AS n, max(frame_number) FROM result WHERE number <= ?1");
