@@ -10,10 +10,13 @@ with_tests=OFF
 
 say() { printf '%s\n' "$*" >&2; }
 
-# The packages of deploy/packages.txt; those of the [test] part only when they are wanted.
+# The packages of deploy/packages.txt; those of the [test] part only when they are wanted, those of
+# the [web] part only where nothing else brought npm (its package and NodeSource's exclude each other).
 wanted_packages() {
-  awk -v tests="$with_tests" '/^# \[/ { part = $2 } /^#/ || NF == 0 { next }
-                              part != "[test]" || tests == "ON"' deploy/packages.txt
+  local has_npm
+  has_npm=$(command -v npm || true)
+  awk -v tests="$with_tests" -v npm="$has_npm" '/^# \[/ { part = $2 } /^#/ || NF == 0 { next }
+    !(part == "[test]" && tests != "ON") && !(part == "[web]" && npm)' deploy/packages.txt
 }
 
 missing_packages() {
@@ -39,11 +42,14 @@ if ((${#missing[@]})); then
 fi
 
 build=build/release
-if [[ ! -f $build/build.ninja ]] || ! grep -q "^BUILD_TESTING:BOOL=$with_tests" $build/CMakeCache.txt; then
+if ((${#missing[@]})) || [[ ! -f $build/build.ninja ]] || ! grep -q "^BUILD_TESTING:BOOL=$with_tests" $build/CMakeCache.txt; then
   # A build with tests also serves a run without them: never take them out again.
+  # What was just installed may serve more than what was built before.
   if [[ $with_tests == ON || ! -f $build/build.ninja ]]; then
     say "Configuring ($build)"
     cmake --preset release -DBUILD_TESTING=$with_tests >/dev/null
+  elif ((${#missing[@]})); then
+    cmake --preset release >/dev/null
   fi
 fi
 say "Building ($build)"

@@ -1,4 +1,5 @@
 import { createClient } from '@connectrpc/connect';
+import { AuditService } from '../gen/visionserver/v1/audit_pb';
 import { CameraService } from '../gen/visionserver/v1/camera_pb';
 import { ParameterService } from '../gen/visionserver/v1/parameter_pb';
 import { ResultService } from '../gen/visionserver/v1/result_pb';
@@ -11,6 +12,7 @@ import { transport } from './transport';
 
 /** One typed client for each service of the server. */
 export const api = {
+  audit: createClient(AuditService, transport),
   cameras: createClient(CameraService, transport),
   parameters: createClient(ParameterService, transport),
   results: createClient(ResultService, transport),
