@@ -8,7 +8,8 @@ import { SessionService } from '../gen/visionserver/v1/session_pb';
 import { StreamService } from '../gen/visionserver/v1/stream_pb';
 import { SystemService } from '../gen/visionserver/v1/system_pb';
 import { UserService } from '../gen/visionserver/v1/user_pb';
-import { transport } from './transport';
+import { setProbe } from './connection';
+import { bareTransport, transport } from './transport';
 
 /** One typed client for each service of the server. */
 export const api = {
@@ -22,3 +23,6 @@ export const api = {
   system: createClient(SystemService, transport),
   users: createClient(UserService, transport),
 };
+
+const bareSystem = createClient(SystemService, bareTransport);
+setProbe(() => bareSystem.getServerInfo({}, { timeoutMs: 5000 }));
