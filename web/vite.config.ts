@@ -25,6 +25,8 @@ export default defineConfig({
   worker: { format: 'es' },
   test: {
     environment: 'jsdom',
+    // A busy machine is no fault of the page.
+    testTimeout: 60_000,
     setupFiles: ['src/test/setup.ts'],
     include: ['src/**/*.test.{ts,tsx}'],
   },

@@ -1,4 +1,4 @@
-import { cleanup } from '@testing-library/react';
+import { cleanup, configure } from '@testing-library/react';
 import { afterEach, vi } from 'vitest';
 
 // What jsdom lacks and Mantine asks for.
@@ -18,5 +18,8 @@ Object.defineProperty(window, 'matchMedia', {
   }),
 });
 Element.prototype.scrollIntoView = () => {};
+
+// A busy machine is no fault of the page.
+configure({ asyncUtilTimeout: 30_000 });
 
 afterEach(cleanup);

@@ -1,0 +1,57 @@
+import { Button, Group, Text } from '@mantine/core';
+import { ConnectError } from '@connectrpc/connect';
+import { useRef, useState } from 'react';
+import { useTranslation } from 'react-i18next';
+
+import { api } from '../api/clients';
+import { bytesText, csvName, download, gatherCsv } from './csv';
+import { toFilter, type Selection } from './filter';
+
+/** Saves all selected results, up to now, as one CSV file. */
+export function ExportButton({ selection }: { selection: Selection }) {
+  const { t } = useTranslation('results');
+  const [bytes, setBytes] = useState<number>();
+  const [failure, setFailure] = useState('');
+  const running = useRef<AbortController>(null);
+
+  const start = async () => {
+    const controller = new AbortController();
+    running.current = controller;
+    setFailure('');
+    setBytes(0);
+    try {
+      const now = new Date();
+      const pieces = api.results.exportResults(
+        { filter: toFilter(selection, now.getTime()) },
+        { signal: controller.signal },
+      );
+      download(await gatherCsv(pieces, setBytes), csvName(now));
+    } catch (error) {
+      if (!controller.signal.aborted) setFailure(ConnectError.from(error).rawMessage);
+    } finally {
+      setBytes(undefined);
+    }
+  };
+
+  return (
+    <Group gap="sm">
+      <Text role="status" size="sm">
+        {bytes !== undefined && t('exporting', { size: bytesText(bytes) })}
+      </Text>
+      {failure !== '' && (
+        <Text role="alert" size="sm">
+          {t('exportFailed', { message: failure })}
+        </Text>
+      )}
+      {bytes === undefined ? (
+        <Button variant="default" onClick={() => void start()}>
+          {t('export')}
+        </Button>
+      ) : (
+        <Button variant="default" onClick={() => running.current?.abort()}>
+          {t('cancel')}
+        </Button>
+      )}
+    </Group>
+  );
+}
