@@ -83,6 +83,7 @@ Status ActiveRun::Start() {
     phase_ = Phase::kOver;
     return status;
   }
+  if (environment_.topics != nullptr) taps_ = Taps(*sequence_, *environment_.topics);
   MutexLock lock(queue_.mutex);
   queue_.Reserve(TaskRoom());
   phase_ = Phase::kOpen;
@@ -104,6 +105,7 @@ Status ActiveRun::StartBlocks() {
 }
 
 void ActiveRun::StopBlocks() {
+  taps_ = Taps();
   for (Sequence::Node& node : sequence_->nodes()) {
     const std::string exception = ExceptionOf([&] { node.block->Stop(); });
     if (!exception.empty()) {
@@ -161,7 +163,7 @@ BlockOutcome ActiveRun::ExecuteBlock(const Task& task) {
   const std::string exception =
       ExceptionOf([&] { parameters_.Apply(task.node, task.frame->context.number); });
   if (!exception.empty()) return {BlockOutcome::Kind::kException, Internal(exception)};
-  return RunBlock(sequence_->nodes()[task.node], task.node, clock_, task.frame);
+  return RunBlock(sequence_->nodes()[task.node], task.node, clock_, taps_, task.frame);
 }
 
 void ActiveRun::ExecuteEntry() {

@@ -16,6 +16,7 @@
 #include "engine/core/run.h"
 #include "engine/core/runner.h"
 #include "engine/core/sequence.h"
+#include "engine/core/taps.h"
 #include "engine/core/task_queue.h"
 
 namespace vs {
@@ -96,6 +97,7 @@ class ActiveRun final : public Run, public std::enable_shared_from_this<ActiveRu
   const FaultHandler on_fault_;
   const std::shared_ptr<const RunInfo> info_;
   LiveParameters parameters_;
+  Taps taps_;  // changes only while no task is under way
 
   Graph followers_;             // for each node: those that wait for it
   std::vector<int> waits_for_;  // for each node: how many it waits for

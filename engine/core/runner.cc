@@ -32,10 +32,12 @@ void ReleaseInputs(const Sequence::Node& node, FrameInFlight* frame) {
   }
 }
 
-void CollectOutputs(const Sequence::Node& node, bool good, FrameInFlight* frame) {
+void CollectOutputs(const Sequence::Node& node, bool good, const Taps& taps, int64_t now_ns,
+                    FrameInFlight* frame) {
   int slot = node.first_output_slot;
   for (PortBase* output : node.block->outputs()) {
     Value value = output->Release();
+    if (good && !value.empty()) taps.Offer(slot, value, frame->context, now_ns);
     if (good && frame->readers_left[slot].load(std::memory_order_relaxed) > 0) {
       frame->slots[slot] = std::move(value);
     }
@@ -66,7 +68,8 @@ void FrameInFlight::Clear() {
   for (Value& value : slots) value = Value();
 }
 
-BlockOutcome RunBlock(Sequence::Node& node, int index, const Clock& clock, FrameInFlight* frame) {
+BlockOutcome RunBlock(Sequence::Node& node, int index, const Clock& clock, const Taps& taps,
+                      FrameInFlight* frame) {
   BlockOutcome outcome;
   if (!HasRequiredInputs(node, *frame)) {
     outcome.kind = BlockOutcome::Kind::kSkipped;
@@ -91,7 +94,7 @@ BlockOutcome RunBlock(Sequence::Node& node, int index, const Clock& clock, Frame
   const int64_t end_ns = clock.MonotonicNs();
   time.end_ns = end_ns;
   outcome.duration_ns = end_ns - start_ns;
-  CollectOutputs(node, outcome.kind == BlockOutcome::Kind::kGood, frame);
+  CollectOutputs(node, outcome.kind == BlockOutcome::Kind::kGood, taps, end_ns, frame);
   ReleaseInputs(node, frame);
   return outcome;
 }

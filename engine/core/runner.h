@@ -9,6 +9,7 @@
 #include "engine/base/status.h"
 #include "engine/core/frame_context.h"
 #include "engine/core/sequence.h"
+#include "engine/core/taps.h"
 #include "engine/core/value.h"
 
 namespace vs {
@@ -41,8 +42,9 @@ struct BlockOutcome {
 };
 
 // Carries one frame through one block: takes the inputs from the frame's slots, runs and times the
-// block, puts its outputs into their slots. Whoever calls it sees to the order. Thread-safe for
-// different blocks.
-BlockOutcome RunBlock(Sequence::Node& node, int index, const Clock& clock, FrameInFlight* frame);
+// block, offers its outputs to the taps and puts them into their slots. Whoever calls it sees to
+// the order. Thread-safe for different blocks.
+BlockOutcome RunBlock(Sequence::Node& node, int index, const Clock& clock, const Taps& taps,
+                      FrameInFlight* frame);
 
 }  // namespace vs

@@ -60,9 +60,10 @@ class LatestSource final : public StreamSource {
       if (channel_->Newest().second > request_.after_seq()) return StreamStep::Wait();
     }
     if (clock_.MonotonicNs() < until_ns_) return StreamStep::Wait(until_ns_);
-    return StreamStep::End(channel_->live() ? DeadlineExceeded("no newer item came in time")
-                                            : NotFound(Str("no running sequence publishes ",
-                                                           Quoted(request_.stream()))));
+    return StreamStep::End(channel_->live()
+                               ? DeadlineExceeded("no newer item came in time")
+                               : NotFound(Str("there is no stream ", Quoted(request_.stream()),
+                                              ": ", channel_->absence())));
   }
 
  private:

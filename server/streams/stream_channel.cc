@@ -18,52 +18,79 @@ void Prune(std::set<std::shared_ptr<Waker>>* wakers) {
 
 }  // namespace
 
-void StreamChannel::Follow(const std::shared_ptr<Topic>& topic, int64_t now_ns) {
+void StreamChannel::Follow(const std::shared_ptr<Topic>& topic, const std::string& absence,
+                           int64_t now_ns) {
   std::shared_ptr<void> old;  // dropped without the lock: a listener may be waiting for it
   Wakers wakers;
+  bool changed = false;
   {
     MutexLock lock(mutex_);
     now_ns_ = now_ns;
-    for (auto& [encoding, packed] : packed_) Prune(&packed.waiting);
-    std::erase_if(packed_, [now_ns](const auto& entry) {
-      const Packed& packed = entry.second;
-      return packed.waiting.empty() && packed.packing_seq == 0 &&
-             now_ns - packed.wanted_ns > kForgetNs;
-    });
-    Prune(&waiting_for_topic_);
-    const bool same =
-        topic == nullptr ? listening_ == nullptr : listening_ != nullptr && topic_.lock() == topic;
-    if (same) return;
-    old = std::exchange(listening_, nullptr);
-    newest_ = nullptr;
-    topic_ = topic;
-    first_seq_ = newest_seq_;
-    if (topic != nullptr) kind_ = KindOf(topic->type());
-    for (auto& [encoding, packed] : packed_) {
-      packed.item = nullptr;
-      wakers.merge(std::exchange(packed.waiting, {}));
+    ForgetUnwanted();
+    changed =
+        topic == nullptr ? listening_ != nullptr : listening_ == nullptr || topic_.lock() != topic;
+    if (topic == nullptr && absence != absence_) {
+      absence_ = absence;
+      wakers = std::exchange(waiting_for_topic_, {});
+    }
+    if (changed) {
+      old = std::exchange(listening_, nullptr);
+      topic_ = topic;
+      newest_ = nullptr;
+      first_seq_ = newest_seq_;
+      for (auto& [encoding, packed] : packed_) {
+        packed.item = nullptr;
+        wakers.merge(std::exchange(packed.waiting, {}));
+      }
     }
   }
   old.reset();
-  if (topic != nullptr) {
-    std::shared_ptr<void> listening =
-        topic->Listen([weak = weak_from_this()](const std::shared_ptr<const Sample>& sample) {
-          if (const auto self = weak.lock()) self->OnSample(sample);
-        });
-    {
-      MutexLock lock(mutex_);
-      listening_ = std::move(listening);
-      wakers.merge(std::exchange(waiting_for_topic_, {}));
-    }
-    // Published before this channel listened.
-    if (const auto latest = topic->Latest()) OnSample(latest);
+  if (changed && topic != nullptr) ListenTo(topic);
+  Wake(wakers);
+}
+
+void StreamChannel::ForgetUnwanted() {
+  for (auto& [encoding, packed] : packed_) Prune(&packed.waiting);
+  std::erase_if(packed_, [now_ns = now_ns_](const auto& entry) {
+    const Packed& packed = entry.second;
+    return packed.waiting.empty() && packed.packing_seq == 0 &&
+           now_ns - packed.wanted_ns > kForgetNs;
+  });
+  Prune(&waiting_for_topic_);
+}
+
+void StreamChannel::ListenTo(const std::shared_ptr<Topic>& topic) {
+  std::shared_ptr<void> listening =
+      topic->Listen([weak = weak_from_this()](const std::shared_ptr<const Sample>& sample) {
+        if (const auto self = weak.lock()) self->OnSample(sample);
+      });
+  Wakers wakers;
+  {
+    MutexLock lock(mutex_);
+    kind_ = KindOf(topic->type());
+    is_tap_ = topic->is_tap();
+    absence_.clear();
+    listening_ = std::move(listening);
+    wakers = std::exchange(waiting_for_topic_, {});
   }
+  // Published before this channel listened.
+  if (const auto latest = topic->Latest()) OnSample(latest);
   Wake(wakers);
 }
 
 bool StreamChannel::live() const {
   MutexLock lock(mutex_);
   return listening_ != nullptr;
+}
+
+bool StreamChannel::is_tap() const {
+  MutexLock lock(mutex_);
+  return is_tap_;
+}
+
+std::string StreamChannel::absence() const {
+  MutexLock lock(mutex_);
+  return absence_;
 }
 
 bool StreamChannel::LiveOrWake(const std::shared_ptr<Waker>& waker) {

@@ -40,11 +40,17 @@ class StreamChannel : public std::enable_shared_from_this<StreamChannel> {
   const std::string& name() const { return name_; }
 
   // Whether its topic is there. Called several times a second: follows a topic that has come
-  // (null: there is none now), and forgets packed items that nobody wanted for a while.
-  void Follow(const std::shared_ptr<Topic>& topic, int64_t now_ns) VS_EXCLUDES(mutex_);
+  // (null: there is none now, and `absence` says why), and forgets packed items that nobody wanted
+  // for a while.
+  void Follow(const std::shared_ptr<Topic>& topic, const std::string& absence, int64_t now_ns)
+      VS_EXCLUDES(mutex_);
 
   bool live() const VS_EXCLUDES(mutex_);
-  // The same; when it is not, `waker` is woken once it is.
+  // Of an output that clients look at without its being published.
+  bool is_tap() const VS_EXCLUDES(mutex_);
+  // Why it is not live, for people.
+  std::string absence() const VS_EXCLUDES(mutex_);
+  // The same as live(); when it is not, `waker` is woken once it is, or why it is not has changed.
   bool LiveOrWake(const std::shared_ptr<Waker>& waker) VS_EXCLUDES(mutex_);
   visionserver::v1::StreamKind kind() const VS_EXCLUDES(mutex_);
   // The newest value with the number that clients see; null and 0 when there is none.
@@ -65,6 +71,8 @@ class StreamChannel : public std::enable_shared_from_this<StreamChannel> {
     int64_t wanted_ns = 0;
   };
 
+  void ForgetUnwanted() VS_REQUIRES(mutex_);
+  void ListenTo(const std::shared_ptr<Topic>& topic) VS_EXCLUDES(mutex_);
   void OnSample(const std::shared_ptr<const Sample>& sample) VS_EXCLUDES(mutex_);
   bool IsQuick() const VS_REQUIRES(mutex_);
   void BeginPacking(const Encoding& encoding, Packed* packed) VS_REQUIRES(mutex_);
@@ -78,6 +86,8 @@ class StreamChannel : public std::enable_shared_from_this<StreamChannel> {
   mutable Mutex mutex_;
   std::weak_ptr<Topic> topic_ VS_GUARDED_BY(mutex_);
   std::shared_ptr<void> listening_ VS_GUARDED_BY(mutex_);
+  bool is_tap_ VS_GUARDED_BY(mutex_) = false;
+  std::string absence_ VS_GUARDED_BY(mutex_);
   visionserver::v1::StreamKind kind_ VS_GUARDED_BY(mutex_) =
       visionserver::v1::STREAM_KIND_UNSPECIFIED;
   std::shared_ptr<const Sample> newest_ VS_GUARDED_BY(mutex_);

@@ -23,20 +23,20 @@ StreamHub::~StreamHub() {
   changed_.NotifyAll();
   watcher_.join();
   // Nothing is published into them any more while the encoders go.
-  for (const auto& channel : Channels()) channel->Follow(nullptr, clock_.MonotonicNs());
+  for (const auto& channel : Channels()) channel->Follow(nullptr, "", clock_.MonotonicNs());
 }
 
 std::shared_ptr<StreamChannel> StreamHub::Channel(const std::string& name) {
   auto channel = FindOrMake(name);
   MutexLock following(following_);
-  channel->Follow(topics_.Find(name), clock_.MonotonicNs());
+  Follow(*channel);
   return channel;
 }
 
 std::vector<std::shared_ptr<StreamChannel>> StreamHub::Live() {
   FollowAll();
   std::vector<std::shared_ptr<StreamChannel>> live = Channels();
-  std::erase_if(live, [](const auto& channel) { return !channel->live(); });
+  std::erase_if(live, [](const auto& channel) { return !channel->live() || channel->is_tap(); });
   return live;
 }
 
@@ -53,15 +53,36 @@ void StreamHub::WatchTopics() {
 
 void StreamHub::FollowAll() {
   MutexLock following(following_);
-  const int64_t now_ns = clock_.MonotonicNs();
   for (const auto& topic : topics_.All()) FindOrMake(topic->name());
-  for (const auto& channel : Channels()) channel->Follow(topics_.Find(channel->name()), now_ns);
-  // Names that somebody waited for in vain; those of real streams are few and keep their count.
+  for (const auto& channel : Channels()) Follow(*channel);
+  ForgetUnused();
+}
+
+void StreamHub::Follow(StreamChannel& channel) {
+  const auto topic = topics_.Find(channel.name());
+  channel.Follow(topic, topic == nullptr ? topics_.WhyAbsent(channel.name()) : "",
+                 clock_.MonotonicNs());
+}
+
+void StreamHub::ForgetUnused() {
+  const auto unused = [](const std::shared_ptr<StreamChannel>& channel) {
+    return channel.use_count() == 1 &&
+           (channel->is_tap() ||
+            (!channel->live() && channel->kind() == visionserver::v1::STREAM_KIND_UNSPECIFIED));
+  };
+  std::vector<std::shared_ptr<StreamChannel>> going;
+  {
+    MutexLock lock(mutex_);
+    for (const auto& [name, channel] : channels_) {
+      if (unused(channel)) going.push_back(channel);
+    }
+  }
+  // A channel must not go while it listens: its last owner could be the listener itself.
+  for (const auto& channel : going) channel->Follow(nullptr, "", clock_.MonotonicNs());
+  going.clear();
   MutexLock lock(mutex_);
-  std::erase_if(channels_, [](const auto& entry) {
-    return entry.second.use_count() == 1 && !entry.second->live() &&
-           entry.second->kind() == visionserver::v1::STREAM_KIND_UNSPECIFIED;
-  });
+  std::erase_if(channels_,
+                [&](const auto& entry) { return unused(entry.second) && !entry.second->live(); });
 }
 
 std::shared_ptr<StreamChannel> StreamHub::FindOrMake(const std::string& name) {

@@ -15,7 +15,7 @@
 namespace vs {
 
 // All streams of the server, by name: one channel for each topic that running sequences publish,
-// and for each that somebody waits for. Thread-safe.
+// and for each other one (taps among them) that somebody has subscribed to. Thread-safe.
 class StreamHub {
  public:
   // Both must outlive it.
@@ -26,13 +26,17 @@ class StreamHub {
 
   // The channel of this name, whether there is a topic or not.
   std::shared_ptr<StreamChannel> Channel(const std::string& name) VS_EXCLUDES(mutex_, following_);
-  // Those that are live, in the order of their names.
+  // Those that are live, in the order of their names, without the taps.
   std::vector<std::shared_ptr<StreamChannel>> Live() VS_EXCLUDES(mutex_, following_);
 
  private:
   void WatchTopics() VS_EXCLUDES(mutex_, following_);
   // Gives all channels their topics, or takes them away.
   void FollowAll() VS_EXCLUDES(mutex_, following_);
+  void Follow(StreamChannel& channel) VS_REQUIRES(following_);
+  // Those that nobody but the hub knows and that need not be kept: names that somebody waited for
+  // in vain, and taps. What is published is little and keeps its count.
+  void ForgetUnused() VS_REQUIRES(following_) VS_EXCLUDES(mutex_);
   std::shared_ptr<StreamChannel> FindOrMake(const std::string& name) VS_EXCLUDES(mutex_);
   std::vector<std::shared_ptr<StreamChannel>> Channels() VS_EXCLUDES(mutex_);
 

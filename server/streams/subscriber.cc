@@ -78,7 +78,7 @@ std::optional<WireMessage> Subscriber::NextOf(Entry* entry, int64_t now_ns) {
     return NoticeItem(wanted.id(), text);
   };
   if (!entry->channel->LiveOrWake(waker_)) {
-    return notice("no running sequence publishes this stream (yet)");
+    return notice(entry->channel->absence());
   }
   if (const pb::StreamKind kind = entry->channel->kind(); kind != entry->kind || !entry->encoding) {
     const auto encoding = Resolve(kind, wanted.codec(), wanted.include_confidence(),

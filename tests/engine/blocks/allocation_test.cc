@@ -83,6 +83,10 @@ TEST(AWarmSequence, TakesNothingFromTheHeap) {
   ASSERT_NE(topic, nullptr);
   std::atomic<uint64_t> heard = 0;
   const auto handle = topic->Listen([&heard](const auto& sample) { heard = sample->seq; });
+  const auto tap = topics.Find(Spec().id + "/first.out");
+  ASSERT_NE(tap, nullptr);
+  std::atomic<uint64_t> tapped = 0;
+  const auto tapping = tap->Listen([&tapped](const auto& sample) { tapped = sample->seq; });
 
   EXPECT_TRUE(test::WaitUntil([&] {
     const uint64_t before = test::Allocations() + slabs;
@@ -91,6 +95,7 @@ TEST(AWarmSequence, TakesNothingFromTheHeap) {
            test::Allocations() + slabs == before;
   }));
   EXPECT_GT(heard, 0u);
+  EXPECT_GT(tapped, 0u);
   run->Stop();
 }
 

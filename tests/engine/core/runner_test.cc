@@ -20,11 +20,12 @@ class Runner : public ::testing::Test {
     RunInfo info{"line", 4, {"source", "one", "two"}};
     frame_ = std::make_unique<FrameInFlight>(*sequence_, std::make_shared<const RunInfo>(info));
     frame_->Begin(*sequence_, 1);
+    taps_ = Taps(*sequence_, topics_);
   }
   ~Runner() override { ClearProbes(); }
 
   BlockOutcome Run(int node) {
-    return RunBlock(sequence_->nodes()[node], node, clock_, frame_.get());
+    return RunBlock(sequence_->nodes()[node], node, clock_, taps_, frame_.get());
   }
   const Value& SlotOf(int node) const {
     return frame_->slots[sequence_->nodes()[node].first_output_slot];
@@ -33,6 +34,8 @@ class Runner : public ::testing::Test {
   SystemClock clock_;
   std::unique_ptr<Sequence> sequence_;
   std::unique_ptr<FrameInFlight> frame_;
+  TopicHub topics_;
+  Taps taps_;
 };
 
 TEST_F(Runner, CarriesValuesAndFreesThemWithTheirLastReader) {
@@ -51,6 +54,28 @@ TEST_F(Runner, CarriesValuesAndFreesThemWithTheirLastReader) {
   EXPECT_TRUE(SlotOf(1).empty());
   EXPECT_TRUE(SlotOf(2).empty()) << "nobody reads it, so it is not kept";
   EXPECT_TRUE(sequence_->nodes()[2].block->FindInput("a")->Release().empty());
+}
+
+TEST_F(Runner, OffersOutputsToWhoeverListens) {
+  const auto topic = topics_.Find("line/two.sum");
+  ASSERT_NE(topic, nullptr);
+  std::vector<int64_t> heard;
+  const auto run_frame = [&](uint64_t number) {
+    frame_->Begin(*sequence_, number);
+    for (int node = 0; node < 3; ++node) Run(node);
+  };
+  run_frame(1);
+  auto handle = topic->Listen(
+      [&](const auto& sample) { heard.push_back(*sample->value.template GetIf<int64_t>()); });
+  run_frame(2);
+  ProbeOf("two").run = [](const StepRun&) { return InvalidArgument("too dark"); };
+  run_frame(3);
+  ProbeOf("two").run = nullptr;
+  handle = nullptr;
+  run_frame(4);
+  // The source counts 1, 2, 3 ..., and two.sum is one.sum and the source's count.
+  EXPECT_EQ(heard, (std::vector<int64_t>{4}));
+  EXPECT_TRUE(SlotOf(2).empty()) << "a tap keeps nothing in the frame";
 }
 
 TEST_F(Runner, TimesTheBlock) {
@@ -99,7 +124,8 @@ TEST(RunBlock, GivesAnIntegerToANumberInput) {
   FrameInFlight frame(*sequence, std::make_shared<const RunInfo>());
   frame.Begin(*sequence, 1);
   const SystemClock clock;
-  for (int node = 0; node < 2; ++node) RunBlock(sequence->nodes()[node], node, clock, &frame);
+  for (int node = 0; node < 2; ++node)
+    RunBlock(sequence->nodes()[node], node, clock, Taps(), &frame);
   EXPECT_EQ(*frame.slots[1].GetIf<double>(), 0.5);
 }
 

@@ -57,6 +57,57 @@ TEST(Topic, NeverCallsAListenerWhoseHandleIsGone) {
   EXPECT_EQ(topic.Latest()->seq, 2000u);
 }
 
+TEST(Topic, KnowsWhetherAnybodyListens) {
+  Topic topic("cell/count", "integer");
+  EXPECT_FALSE(topic.HasListeners());
+  auto one = topic.Listen([](const auto&) {});
+  auto two = topic.Listen([](const auto&) {});
+  one = nullptr;
+  EXPECT_TRUE(topic.HasListeners());
+  two = nullptr;
+  EXPECT_FALSE(topic.HasListeners());
+}
+
+TEST(Topic, KeepsNoValueOfATap) {
+  Topic tap("cell/step.sum", "integer", Topic::Kind::kTap);
+  std::shared_ptr<const Sample> heard;
+  const auto handle = tap.Listen([&](const auto& sample) { heard = sample; });
+  tap.Publish(Value(int64_t{5}), FrameNumber(1), 0);
+  EXPECT_EQ(*heard->value.GetIf<int64_t>(), 5);
+  EXPECT_EQ(tap.Latest(), nullptr);
+  EXPECT_EQ(heard.use_count(), 1);
+}
+
+TEST(TopicHub, FindsTapsWithoutListingThem) {
+  TopicHub hub;
+  auto tap = hub.OpenTap("cell/step.sum", "integer");
+  EXPECT_EQ(hub.Find("cell/step.sum"), tap);
+  EXPECT_TRUE(hub.All().empty());
+  // A run that is started again takes the place of the one before.
+  const auto next = hub.OpenTap("cell/step.sum", "integer");
+  EXPECT_EQ(hub.Find("cell/step.sum"), next);
+}
+
+TEST(TopicHub, SaysWhatIsThereInstead) {
+  TopicHub hub;
+  EXPECT_EQ(hub.WhyAbsent("cell/depth"), "no running sequence publishes this stream (yet)");
+  auto left = hub.Open("cell/left", "frame").value();
+  EXPECT_EQ(hub.WhyAbsent("cell/depth"), "no running sequence publishes this stream (yet)")
+      << "it is just being started";
+  const auto sum = hub.OpenTap("cell/step.sum", "integer");
+  const auto pass = hub.OpenTap("cell/step.pass", "bool");
+  EXPECT_EQ(hub.WhyAbsent("cell/depth"),
+            "sequence cell publishes left; an output of a block is cell/block.port");
+  left = nullptr;
+  EXPECT_EQ(hub.WhyAbsent("cell/depth"),
+            "sequence cell publishes nothing; an output of a block is cell/block.port");
+  EXPECT_EQ(hub.WhyAbsent("cell/other.sum"), "sequence cell has no block \"other\" with outputs");
+  EXPECT_EQ(hub.WhyAbsent("cell/step.depth"),
+            "the outputs of block step of sequence cell are pass, sum, without \"depth\"");
+  EXPECT_EQ(hub.WhyAbsent("cell2/step.sum"), "no running sequence publishes this stream (yet)");
+  EXPECT_EQ(hub.WhyAbsent("ce.ll"), "no running sequence publishes this stream (yet)");
+}
+
 TEST(TopicHub, AllowsOnePublisherForEachName) {
   TopicHub hub;
   auto depth = hub.Open("cell/depth", "depth_map");

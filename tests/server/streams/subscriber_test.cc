@@ -317,6 +317,37 @@ TEST_F(SubscriberTest, NamesThatNobodyWaitsForAnyMoreAreForgotten) {
   EXPECT_EQ("demo/depth", live[0]->name());
 }
 
+TEST_F(SubscriberTest, ATapIsListenedToAsLongAsSomebodyIsSubscribed) {
+  auto tap = topics_.OpenTap("demo/match.disparity", "disparity_map");
+  EXPECT_FALSE(tap->HasListeners());
+  ASSERT_TRUE(client_.Subscribe({Wish(1, "demo/match.disparity", 16)}).ok());
+  ASSERT_TRUE(tap->HasListeners());
+  PublishMap(*tap, 1);
+  EXPECT_EQ(test::PixelsOf(test::MapOf(32, 16, 1).disparity),
+            test::UnpackDisparity(client_.Next()));
+  EXPECT_TRUE(hub_.Live().empty()) << "taps are not listed";
+
+  // The sequence is started again.
+  tap = nullptr;
+  EXPECT_THAT(client_.Next().notice(), HasSubstr("no running sequence"));
+  tap = topics_.OpenTap("demo/match.disparity", "disparity_map");
+  EXPECT_TRUE(WaitUntil([&] { return tap->HasListeners(); }));
+  PublishMap(*tap, 2);
+  EXPECT_EQ(2u, client_.Next().seq());
+
+  ASSERT_TRUE(client_.subscriber().Update({}, {1}).ok());
+  EXPECT_TRUE(WaitUntil([&] { return !tap->HasListeners(); }));
+}
+
+TEST_F(SubscriberTest, AWrongOutputIsToldOnceTheSequenceRuns) {
+  ASSERT_TRUE(client_.Subscribe({Wish(1, "demo/match.depth")}).ok());
+  EXPECT_THAT(client_.Next().notice(), HasSubstr("no running sequence"));
+  const auto tap = topics_.OpenTap("demo/match.disparity", "disparity_map");
+  EXPECT_EQ("the outputs of block match of sequence demo are disparity, without \"depth\"",
+            client_.Next().notice());
+  EXPECT_TRUE(client_.HasNothing());
+}
+
 TEST_F(SubscriberTest, ManyClientsAndOneFastSourceAgreeUnderLoad) {
   const auto topic = Open("demo/depth", "disparity_map");
   std::vector<std::thread> clients;
