@@ -2,12 +2,13 @@
 # Runs VisionServer with a simulated pair of GigE Vision cameras: installs what is missing, builds,
 # starts cameras and server, and says where to look.
 #
-#   deploy/run.sh [--duration SECONDS] [--fps N] [--port N] [--folder DIR] [--data DIR]
-#                 [--wait SECONDS]
+#   deploy/run.sh [--duration SECONDS] [--fps N] [--port N] [--web-port N] [--folder DIR]
+#                 [--data DIR] [--wait SECONDS]
 #
 #   --duration SECONDS  end by itself after so many seconds of depth; without it, Ctrl-C ends it
 #   --fps N             pairs per second that the cameras are triggered for (default 30)
 #   --port N            where the server listens on this machine (default 50051; 0: any free port)
+#   --web-port N        where the page for browsers is (default 8443; any free port with --port 0)
 #   --folder DIR        serve the picture pairs of a folder in place of the simulated scene
 #   --data DIR          what the server stores (default: ~/.local/state/visionserver-demo)
 #   --wait SECONDS      give up when no depth comes for so long (default 60)
@@ -21,13 +22,14 @@ usage() { sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "$0"; }
 die() { printf 'run.sh: %s\n' "$*" >&2; exit "${code:-1}"; }
 whole() { [[ $2 =~ ^[0-9]{1,9}$ ]] || code=2 die "$1 needs a whole number, not \"$2\""; }
 
-duration='' fps=30 port=50051 folder='' wait=60
+duration='' fps=30 port=50051 web_port='' folder='' wait=60
 data=${XDG_STATE_HOME:-$HOME/.local/state}/visionserver-demo
 while (($#)); do
   case $1 in
-    --duration | --fps | --port | --folder | --data | --wait)
+    --duration | --fps | --port | --web-port | --folder | --data | --wait)
       (($# > 1)) || code=2 die "$1 needs a value; see --help"
-      printf -v "${1#--}" %s "$2"
+      name=${1#--}
+      printf -v "${name//-/_}" %s "$2"
       shift 2 ;;
     --help | -h) usage; exit ;;
     *) code=2 die "unknown option $1; see --help" ;;
@@ -35,6 +37,8 @@ while (($#)); do
 done
 [[ -z $duration ]] || whole --duration "$duration"
 whole --port "$port"
+: "${web_port:=$((10#$port ? 8443 : 0))}"
+whole --web-port "$web_port"
 whole --wait "$wait"
 [[ $fps =~ ^[0-9]+([.][0-9]+)?$ && $fps =~ [1-9] ]] ||
   code=2 die "--fps needs a number above 0, not \"$fps\""
@@ -115,6 +119,7 @@ quoted=${data//\\/\\\\}
 quoted=${quoted//\"/\\\"}
 config=$(<deploy/demo/server.conf)
 config=${config//@DATA@/"$quoted"}
+config=${config//@WEB_PORT@/$((10#$web_port))}
 printf '%s\n' "${config//@PORT@/$((10#$port))}" >"$work/server.conf"
 
 apart "$bin/gevsim" --fps "$fps" ${folder:+--folder "$folder"} \
@@ -129,6 +134,7 @@ await "no depth came from the sequence $data/sequences/stereo_depth.json" \
   grep -qs '^stereo_depth: ' "$work/server"
 
 address=$(sed -n 's/^VisionServer .* listens on \([^ ]*\).*/\1/p' "$work/server")
+page=$(sed -n 's/^the page is at //p' "$work/server")
 fingerprint=$(sed -n 's/^certificate fingerprint (SHA-256): //p' "$work/server")
 password=$(sed -n 's/^one-time password of the user admin.*: //p' "$work/server")
 
@@ -136,6 +142,7 @@ cat <<TEXT
 
 VisionServer streams depth from two simulated GigE cameras: $(report | grep -o '[0-9.]* fps')
 
+  page         $page
   address      $address
   fingerprint  $fingerprint
   admin        ${password:-(the password that you chose at the first login)}

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <exception>
+#include <filesystem>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -55,10 +56,20 @@ LogLevel ToLogLevel(config::ServerConfig::LogLevel level) {
   return LogLevel::kInfo;
 }
 
+// The folder "web" beside that of the programs, where a build or an installation puts the page.
+std::filesystem::path DefaultWebRoot() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return program.parent_path().parent_path() / "web";
+}
+
 // For people and for the scripts that start a server: on standard output, once.
 void Greet(const Server& server) {
   std::printf("VisionServer %s listens on %s%s\n", kVersion, server.address().c_str(),
               server.fingerprint().empty() ? " (plain text)" : "");
+  if (const std::string page = server.PageAddress(); !page.empty()) {
+    std::printf("the page is at %s\n", page.c_str());
+  }
   if (!server.fingerprint().empty()) {
     std::printf("certificate fingerprint (SHA-256): %s\n", server.fingerprint().c_str());
   }
@@ -118,12 +129,17 @@ int RunProgram(int argument_count, char** arguments) {
   std::string config_file;
   bool check_config = false;
   bool rescue_admin = false;
+  bool no_web = false;
+  std::string web_root = DefaultWebRoot().string();
   int report_s = 0;
   app.add_option("--config", config_file, "The configuration file")->required();
   app.add_flag("--check-config", check_config,
                "Only check the configuration and print it with all defaults");
   app.add_flag("--rescue-admin", rescue_admin,
                "Give the user admin a new one-time password and print it");
+  app.add_flag("--no-web", no_web, "Serve no page for browsers");
+  app.add_option("--web-root", web_root, "The folder with the files of the page")
+      ->check(CLI::ExistingDirectory);
   app.add_option("--report", report_s,
                  "Print the rate of each running sequence every so many seconds")
       ->check(CLI::Range(1, 3600));
@@ -137,8 +153,9 @@ int RunProgram(int argument_count, char** arguments) {
                 kExitBadConfig);
   }
 
-  const Result<config::ServerConfig> config = LoadConfig(config_file);
+  Result<config::ServerConfig> config = LoadConfig(config_file);
   if (!config) return Fail(config.error(), kExitBadConfig);
+  if (no_web) config->set_web_address("");
   if (check_config) {
     std::fputs(Describe(*config).c_str(), stdout);
     return EXIT_SUCCESS;
@@ -156,7 +173,7 @@ int RunProgram(int argument_count, char** arguments) {
   RaiseFileLimit();
 
   Result<std::unique_ptr<Server>> server =
-      Server::Start({.config = *config, .rescue_admin = rescue_admin});
+      Server::Start({.config = *config, .rescue_admin = rescue_admin, .web_root = web_root});
   if (!server) return Fail(server.error(), kExitFailure);
   Greet(**server);
 

@@ -1,6 +1,9 @@
 #include "server/server.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
 #include <set>
 #include <thread>
 #include <utility>
@@ -62,6 +65,22 @@ GrpcServerOptions ToGrpcOptions(const config::Limits& limits, ListenAddress addr
           .memory_bytes = static_cast<size_t>(limits.receive_memory_mib()) << 20};
 }
 
+HttpServerOptions ToHttpOptions(const config::ServerConfig& config, ListenAddress address) {
+  const config::Limits& limits = config.limits();
+  const config::WebLimits& web = config.web_limits();
+  return {.acceptor = {.address = std::move(address),
+                       .max_connections = web.connections(),
+                       .max_connections_per_address = web.connections_per_address()},
+          .limits = {
+              .handshake = milliseconds(limits.handshake_ms()),
+              .head = milliseconds(web.head_ms()),
+              .idle = milliseconds(web.idle_ms()),
+              .calls = {.request_bytes = static_cast<size_t>(limits.request_kib()) << 10,
+                        .request_time = milliseconds(web.body_ms()),
+                        .unread = milliseconds(limits.unread_ms()),
+                        .memory_bytes = static_cast<size_t>(limits.receive_memory_mib()) << 20}}};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
@@ -92,6 +111,7 @@ Server::~Server() {
   changed_.NotifyAll();
   if (housekeeper_.joinable()) housekeeper_.join();
   if (dispatcher_) dispatcher_->Drain();
+  if (http_) http_->Stop(milliseconds(0));
   if (grpc_) grpc_->Stop(milliseconds(0));
 }
 
@@ -143,9 +163,36 @@ Status Server::StartNetwork() {
   dispatcher_ =
       std::make_unique<Dispatcher>(router_, *access_, ToDispatcherOptions(config_.limits()));
   VS_ASSIGN_OR_RETURN(grpc_, GrpcServer::Start(options, *dispatcher_));
-  system_service_->Attach(*dispatcher_, [this] { return grpc_->Connections(); });
+  if (!config_.web_address().empty()) VS_RETURN_IF_ERROR(StartPage());
+  system_service_->Attach(*dispatcher_, [this] { return Connections(); });
   grpc_->TakeConnections();
+  if (http_) http_->TakeConnections();
   return Status();
+}
+
+Status Server::StartPage() {
+  Result<ListenAddress> address = ListenAddress::Parse(config_.web_address());
+  if (!address) return address.error().Annotated("web_address");
+  HttpServerOptions options = ToHttpOptions(config_, std::move(*address));
+  options.certificate = certificate_;
+  options.web_root = options_.web_root;
+  Result<std::unique_ptr<HttpServer>> started = HttpServer::Start(options, *dispatcher_);
+  if (!started) {
+    return started.error().Annotated(
+        "the page (web_address chooses another address, --no-web none)");
+  }
+  http_ = std::move(*started);
+  return Status();
+}
+
+Acceptor::Stats Server::Connections() const {
+  Acceptor::Stats all = grpc_->Connections();
+  if (!http_) return all;
+  const Acceptor::Stats page = http_->Connections();
+  all.open += page.open;
+  all.accepted += page.accepted;
+  all.refused += page.refused;
+  return all;
 }
 
 void Server::Drain() {
@@ -159,6 +206,7 @@ void Server::Drain() {
   while (!dispatcher_->Idle() && end.Left() > kLastBytes) {
     std::this_thread::sleep_for(milliseconds(10));
   }
+  if (http_) http_->Stop(end.Left());
   grpc_->Stop(end.Left());
 }
 
@@ -195,6 +243,16 @@ std::string Server::address() const {
   ListenAddress address = *ListenAddress::Parse(config_.listen_address());
   address.port = grpc_->port();
   return address.ToString();
+}
+
+std::string Server::PageAddress() const {
+  if (!http_) return "";
+  ListenAddress address = *ListenAddress::Parse(config_.web_address());
+  address.port = http_->port();
+  std::array<char, 256> host{};
+  const bool everywhere = address.host == "0.0.0.0" || address.host == "::";
+  if (everywhere && ::gethostname(host.data(), host.size() - 1) == 0) address.host = host.data();
+  return Str(config_.plaintext() ? "http://" : "https://", address.ToString(), '/');
 }
 
 }  // namespace vs

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "server/access/password.h"
 #include "server/config/config.h"
 #include "server/data_folder.h"
+#include "server/http/http_server.h"
 #include "server/rpc/dispatcher.h"
 #include "server/rpc/router.h"
 #include "server/services/alarm_board.h"
@@ -34,6 +36,8 @@ struct ServerOptions {
   PasswordCost password_cost;  // less only in tests
   // Gives the user "admin" a new one-time password.
   bool rescue_admin = false;
+  // Folder of the page's files, "" for none.
+  std::filesystem::path web_root;
   // For sessions and throttling; the machine's clock if null. Must outlive the server.
   const Clock* clock = nullptr;
 };
@@ -59,6 +63,9 @@ class Server {
   // "127.0.0.1:50051": where it listens, with the port that it really got.
   std::string address() const;
   uint16_t port() const { return grpc_->port(); }
+  // Of the page, "https://127.0.0.1:8443/", with the port that it really got and this machine's
+  // name where it listens on all its addresses; empty when there is none.
+  std::string PageAddress() const;
   // SHA-256 of its certificate; empty without TLS.
   const std::string& fingerprint() const { return fingerprint_; }
   // To log in as "admin", once; nothing when somebody has already. Told nowhere else.
@@ -69,6 +76,8 @@ class Server {
   AlarmBoard& alarms() { return alarms_; }
   const Dispatcher& dispatcher() const { return *dispatcher_; }
   GrpcServer& grpc() { return *grpc_; }
+  // Null when the configuration has no web_address.
+  HttpServer* http() { return http_.get(); }
   Vision& vision() { return *vision_; }
 
  private:
@@ -76,6 +85,8 @@ class Server {
   Status OpenStores();
   void RegisterServices();
   Status StartNetwork();
+  Status StartPage();
+  Acceptor::Stats Connections() const;
   void LookAtCertificate();
   void KeepHouse() VS_EXCLUDES(mutex_);
 
@@ -105,6 +116,7 @@ class Server {
   // What brings calls. It goes before the parts above.
   std::unique_ptr<Dispatcher> dispatcher_;
   std::unique_ptr<GrpcServer> grpc_;
+  std::unique_ptr<HttpServer> http_;
 
   std::optional<CertificateFiles> certificate_;
   Mutex mutex_;

@@ -32,7 +32,7 @@ struct Range {
   int32_t max;
 };
 // The ranges that server_config.proto tells its reader.
-constexpr std::array<Range, 15> kRanges = {{{"Limits.connections", 1, 10'000},
+constexpr std::array<Range, 20> kRanges = {{{"Limits.connections", 1, 10'000},
                                             {"Limits.connections_per_address", 1, 10'000},
                                             {"Limits.streams_per_connection", 1, 1'000},
                                             {"Limits.open_streams", 1, 100'000},
@@ -42,6 +42,11 @@ constexpr std::array<Range, 15> kRanges = {{{"Limits.connections", 1, 10'000},
                                             {"Limits.keepalive_ms", 1'000, 3'600'000},
                                             {"Limits.unread_ms", 500, 600'000},
                                             {"Limits.streams_per_session", 1, 100'000},
+                                            {"WebLimits.connections", 1, 10'000},
+                                            {"WebLimits.connections_per_address", 1, 10'000},
+                                            {"WebLimits.head_ms", 500, 60'000},
+                                            {"WebLimits.body_ms", 500, 600'000},
+                                            {"WebLimits.idle_ms", 500, 3'600'000},
                                             {"Sessions.idle_minutes", 1, 10'080},
                                             {"Sessions.lifetime_minutes", 1, 43'200},
                                             {"Sessions.per_user", 1, 1'000},
@@ -194,6 +199,11 @@ void MakeAbsolute(const std::filesystem::path& folder, std::string* path) {
   *path = std::filesystem::absolute(folder / *path).lexically_normal().string();
 }
 
+std::string DefaultWebAddress(const std::string& listen_address) {
+  const size_t colon = std::min(listen_address.rfind(':'), listen_address.size());
+  return listen_address.substr(0, colon) + (listen_address.substr(colon) == ":0" ? ":0" : ":8443");
+}
+
 void SetDefaults(Message* message) {
   const auto* descriptor = message->GetDescriptor();
   const auto* reflection = message->GetReflection();
@@ -242,6 +252,9 @@ Result<config::ServerConfig> ParseConfig(std::string_view text, std::string_view
   if (!config.has_rigs_dir()) config.set_rigs_dir(config.data_dir() + "/rigs");
   MakeAbsolute(folder, config.mutable_sequences_dir());
   MakeAbsolute(folder, config.mutable_rigs_dir());
+  if (!config.has_web_address()) {
+    config.set_web_address(DefaultWebAddress(config.listen_address()));
+  }
   for (std::string& root : *config.mutable_picture_root()) MakeAbsolute(folder, &root);
   if (config.has_tls_certificate()) {
     MakeAbsolute(folder, config.mutable_tls_certificate());

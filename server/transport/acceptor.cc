@@ -54,7 +54,11 @@ std::string HostOf(const SocketAddress& address) {
   std::array<char, INET6_ADDRSTRLEN> text{};
   if (address.storage.ss_family == AF_INET6) {
     const auto* v6 = reinterpret_cast<const sockaddr_in6*>(&address.storage);
-    inet_ntop(AF_INET6, &v6->sin6_addr, text.data(), text.size());
+    if (IN6_IS_ADDR_V4MAPPED(&v6->sin6_addr)) {  // the same client as on an IPv4 socket
+      inet_ntop(AF_INET, &v6->sin6_addr.s6_addr[12], text.data(), text.size());
+    } else {
+      inet_ntop(AF_INET6, &v6->sin6_addr, text.data(), text.size());
+    }
   } else {
     const auto* v4 = reinterpret_cast<const sockaddr_in*>(&address.storage);
     inet_ntop(AF_INET, &v4->sin_addr, text.data(), text.size());
@@ -128,7 +132,7 @@ Acceptor::~Acceptor() {
   if (reserve_ >= 0) ::close(reserve_);
 }
 
-void Acceptor::Start(std::function<void(int fd)> take) {
+void Acceptor::Start(Take take) {
   take_ = std::move(take);
   thread_ = std::jthread([this] { Run(); });
 }
@@ -156,13 +160,14 @@ void Acceptor::AcceptOne() {
     if (errno == EMFILE || errno == ENFILE || errno == ENOMEM || errno == ENOBUFS) TurnOneAway();
     return;  // anything else is about this one connection only
   }
-  if (!Admit(fd, HostOf(peer))) {
+  const std::string address = HostOf(peer);
+  if (!Admit(fd, address)) {
     ::close(fd);
     return;
   }
   const int on = 1;
   ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  take_(fd);
+  take_(fd, address);
 }
 
 void Acceptor::TurnOneAway() {

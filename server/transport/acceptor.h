@@ -35,7 +35,9 @@ class Acceptor {
   Acceptor& operator=(const Acceptor&) = delete;
 
   // Calls `take` on a thread of its own for each connection; `take` owns the descriptor then.
-  void Start(std::function<void(int fd)> take);
+  // `address`: of the client, no port.
+  using Take = std::function<void(int fd, const std::string& address)>;
+  void Start(Take take);
   // Accepts no more; `take` is not called any more when it returns.
   void Stop();
 
@@ -71,7 +73,7 @@ class Acceptor {
   const int stop_event_;
   const uint16_t port_;
   int reserve_;
-  std::function<void(int fd)> take_;
+  Take take_;
   mutable Mutex mutex_;
   mutable std::map<int, Connection> connections_ VS_GUARDED_BY(mutex_);
   uint64_t accepted_ VS_GUARDED_BY(mutex_) = 0;

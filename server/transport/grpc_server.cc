@@ -60,13 +60,9 @@ std::string_view BearerCredential(const grpc::CallbackServerContext& context) {
   return value.starts_with(kScheme) ? value.substr(kScheme.size()) : std::string_view();
 }
 
-// "ipv4:10.0.0.7:1234", "ipv6:%5Bfe80::1%5D:1234"; a gateway in this process speaks for its client.
+// Of "ipv4:10.0.0.7:1234" or "ipv6:%5Bfe80::1%5D:1234".
 std::string ClientAddress(const grpc::CallbackServerContext& context) {
   const std::string peer = context.peer();
-  if (!peer.starts_with("ipv4:") && !peer.starts_with("ipv6:")) {
-    const std::string_view client = Metadata(context, "x-vs-client-address");
-    return client.empty() ? "in process" : std::string(client);
-  }
   std::string host = peer.substr(5, peer.rfind(':') - 5);
   if (host.starts_with("%5B")) host = host.substr(3, host.size() - 6);
   if (host.starts_with('[')) host = host.substr(1, host.size() - 2);
@@ -179,7 +175,7 @@ class GrpcServer::Impl final : public grpc::CallbackGenericService {
   }
 
   void TakeConnections() {
-    listener_->Start([this](int fd) {
+    listener_->Start([this](int fd, const std::string& /*address*/) {
       grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
       connection.fd = fd;
       entry_->HandleNewConnection(&connection);
@@ -194,7 +190,6 @@ class GrpcServer::Impl final : public grpc::CallbackGenericService {
   }
 
   const Acceptor& listener() const { return *listener_; }
-  grpc::Server& server() { return *server_; }
 
  private:
   grpc::ServerGenericBidiReactor* CreateReactor(
@@ -221,9 +216,6 @@ GrpcServer::~GrpcServer() = default;
 void GrpcServer::TakeConnections() { impl_->TakeConnections(); }
 uint16_t GrpcServer::port() const { return impl_->listener().port(); }
 Acceptor::Stats GrpcServer::Connections() const { return impl_->listener().GetStats(); }
-std::shared_ptr<grpc::Channel> GrpcServer::InProcessChannel() {
-  return impl_->server().InProcessChannel(grpc::ChannelArguments());
-}
 void GrpcServer::Stop(std::chrono::milliseconds patience) { impl_->Stop(patience); }
 
 }  // namespace vs

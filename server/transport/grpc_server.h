@@ -11,10 +11,6 @@
 #include "server/transport/acceptor.h"
 #include "server/transport/certificate.h"
 
-namespace grpc {
-class Channel;
-}
-
 namespace vs {
 
 struct GrpcServerOptions {
@@ -53,9 +49,6 @@ class GrpcServer {
   void TakeConnections();
   uint16_t port() const;
   Acceptor::Stats Connections() const;
-  // For a gateway in this process. Its calls name their client in the metadata
-  // `x-vs-client-address`, which is heeded on this channel only.
-  std::shared_ptr<grpc::Channel> InProcessChannel();
 
   // Accepts no more connections, lets running calls end until the deadline, then cuts them off.
   // Returns when the last call is gone.

@@ -62,7 +62,14 @@ LIBRARIES = {
         "tests/*",
     },
     r"sodium\.h": {"server/access/*"},
-    r"openssl": {"client/certificate.cc", "server/transport/certificate.cc"},
+    r"boost": {"server/http/request_reader.cc"},
+    r"openssl": {
+        "client/certificate.cc",
+        "server/http/client_stream.cc",
+        "server/http/tls_context.cc",
+        "server/transport/certificate.cc",
+        "tests/server/http/*",
+    },
     r"turbojpeg\.h": {"server/streams/jpeg_encoder.cc", "tests/*"},
     r"png\.h": {"client/cli/png_file.cc", "engine/image/png.cc", "tests/*"},
 }

@@ -75,6 +75,7 @@ TEST_F(RunScript, StreamsForAsLongAsItIsTold) {
   const std::string output = run->Output();
   EXPECT_THAT(output, ContainsRegex("streams depth from two simulated GigE cameras: [0-9.]+ fps"));
   EXPECT_THAT(output, ContainsRegex("address +127\\.0\\.0\\.1:[0-9]+\n"));
+  EXPECT_THAT(output, ContainsRegex("page +https://127\\.0\\.0\\.1:[0-9]+/\n"));
   EXPECT_THAT(output, ContainsRegex("fingerprint +([0-9A-F]{2}:){31}[0-9A-F]{2}\n"));
   EXPECT_THAT(output, ContainsRegex("admin +([a-z2-9]{5}-){3}[a-z2-9]{5}\n"));
   EXPECT_THAT(output, ContainsRegex("Summary: stereo_depth: [0-9.]+ fps, [0-9]+ ms latency, "
@@ -132,6 +133,7 @@ TEST_F(RunScript, RefusesWhatMakesNoSense) {
   EXPECT_THAT(Refused({"--duration", "soon"}), HasSubstr("--duration needs a whole number"));
   EXPECT_THAT(Refused({"--folder", "nowhere"}), HasSubstr("there is no folder nowhere"));
   EXPECT_THAT(Refused({"--port"}), HasSubstr("--port needs a value"));
+  EXPECT_THAT(Refused({"--web-port", "secure"}), HasSubstr("--web-port needs a whole number"));
   EXPECT_THAT(Refused({"--colour"}), HasSubstr("unknown option --colour"));
 }
 

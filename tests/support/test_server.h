@@ -8,6 +8,10 @@
 #include "server/server.h"
 #include "tests/support/temp_folder.h"
 
+namespace grpc {
+class Channel;
+}
+
 namespace vs::test {
 
 struct TestServerOptions {

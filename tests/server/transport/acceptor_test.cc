@@ -54,7 +54,7 @@ class AcceptorTest : public ::testing::Test {
                                    .max_connections_per_address = max_per_address});
   }
   void Start() {
-    acceptor_->Start([this](int fd) { taker_.Take(fd); });
+    acceptor_->Start([this](int fd, const std::string& /*address*/) { taker_.Take(fd); });
   }
   bool Taken(size_t count) {
     return WaitUntil([&] { return taker_.Count() == count; });
@@ -165,7 +165,7 @@ TEST_F(AcceptorTest, SaysThatItsPortIsTaken) {
 TEST_F(AcceptorTest, ListensOnIpv6) {
   const auto listening = Acceptor::Listen({.address = *ListenAddress::Parse("[::]:0")});
   if (!listening) GTEST_SKIP() << "this machine has no IPv6: " << listening.error().message();
-  (*listening)->Start([this](int fd) { taker_.Take(fd); });
+  (*listening)->Start([this](int fd, const std::string& /*address*/) { taker_.Take(fd); });
   RawSocket by_ipv4((*listening)->port());
   EXPECT_TRUE(Taken(1));
 }
