@@ -1,7 +1,38 @@
-import { Title } from '@mantine/core';
+import { Button, Loader, Stack } from '@mantine/core';
+import { useQuery } from '@tanstack/react-query';
 import { useTranslation } from 'react-i18next';
+import { useParams } from 'react-router';
+import { api } from '../api/clients';
+import { ErrorNote } from '../shell/ErrorNote';
+import { usePageTitle } from '../shell/usePageTitle';
+import { SequenceView } from './SequenceView';
 
+/** Looks at one sequence while it works: pictures, depth, point cloud, parameters, blocks. */
 export default function SequencePage() {
+  const { id = '' } = useParams();
   const { t } = useTranslation('sequence');
-  return <Title order={1}>{t('title')}</Title>;
+  usePageTitle(id);
+  const query = useQuery({
+    queryKey: ['sequence', id],
+    queryFn: async () => {
+      const [sequence, { blockTypes }] = await Promise.all([
+        api.sequences.getSequence({ id }),
+        api.sequences.listBlockTypes({}),
+      ]);
+      return { sequence, blockTypes };
+    },
+  });
+  if (query.isPending) return <Loader aria-label={t('loading')} />;
+  if (query.isError) {
+    return (
+      <Stack align="flex-start">
+        <ErrorNote error={query.error} />
+        <Button size="xs" onClick={() => void query.refetch()}>
+          {t('again')}
+        </Button>
+      </Stack>
+    );
+  }
+  const { sequence, blockTypes } = query.data;
+  return <SequenceView key={id} sequence={sequence} blockTypes={blockTypes} />;
 }
