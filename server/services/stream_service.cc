@@ -48,9 +48,7 @@ class LatestSource final : public StreamSource {
 
   StreamStep Next() override {
     if (channel_->LiveOrWake(waker_)) {
-      const auto encoding =
-          Resolve(channel_->kind(), request_.codec(), request_.include_confidence(),
-                  request_.include_reasons(), request_.jpeg_quality());
+      const auto encoding = Resolve(channel_->kind(), WantedBy(request_));
       if (!encoding) return StreamStep::End(encoding.error());
       if (const auto item = channel_->Take(*encoding, &want_, waker_)) {
         if (!item->status.ok()) return StreamStep::End(item->status);

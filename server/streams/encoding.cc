@@ -35,30 +35,31 @@ std::vector<pb::Codec> CodecsOf(pb::StreamKind kind) {
   }
 }
 
-Result<Encoding> Resolve(pb::StreamKind kind, pb::Codec codec, bool include_confidence,
-                         bool include_reasons, uint32_t jpeg_quality) {
+Result<Encoding> Resolve(pb::StreamKind kind, const Encoding& wanted) {
   if (kind == pb::STREAM_KIND_UNSPECIFIED) {
     return InvalidArgument("values of this type cannot be sent to clients");
   }
-  if (jpeg_quality > 100) {
-    return InvalidArgument(Str("jpeg_quality must be 1 to 100, or 0 for 80, not ", jpeg_quality));
+  if (wanted.jpeg_quality > 100) {
+    return InvalidArgument(
+        Str("jpeg_quality must be 1 to 100, or 0 for 80, not ", wanted.jpeg_quality));
   }
   if (kind == pb::STREAM_KIND_VALUE) return Encoding();
+  Encoding encoding = wanted;
   const std::vector<pb::Codec> codecs = CodecsOf(kind);
-  if (codec == pb::CODEC_UNSPECIFIED) codec = codecs.front();
-  if (std::find(codecs.begin(), codecs.end(), codec) == codecs.end()) {
+  if (encoding.codec == pb::CODEC_UNSPECIFIED) encoding.codec = codecs.front();
+  if (std::find(codecs.begin(), codecs.end(), encoding.codec) == codecs.end()) {
     std::string names;
     for (const pb::Codec one : codecs) names += (names.empty() ? "" : ", ") + pb::Codec_Name(one);
-    return InvalidArgument(
-        Str("this stream can be had as ", names, ", not as ",
-            pb::Codec_IsValid(codec) ? pb::Codec_Name(codec) : Str("codec ", int{codec})));
+    return InvalidArgument(Str("this stream can be had as ", names, ", not as ",
+                               pb::Codec_IsValid(encoding.codec)
+                                   ? pb::Codec_Name(encoding.codec)
+                                   : Str("codec ", int{encoding.codec})));
   }
-  Encoding encoding;
-  encoding.codec = codec;
-  encoding.confidence = include_confidence && kind == pb::STREAM_KIND_DISPARITY;
-  encoding.reasons = include_reasons && kind == pb::STREAM_KIND_DISPARITY;
-  if (codec == pb::CODEC_JPEG) {
-    encoding.jpeg_quality = jpeg_quality == 0 ? 80 : static_cast<int>(jpeg_quality);
+  if (kind != pb::STREAM_KIND_DISPARITY) encoding.confidence = encoding.reasons = false;
+  if (encoding.codec != pb::CODEC_JPEG) {
+    encoding.jpeg_quality = 0;
+  } else if (encoding.jpeg_quality == 0) {
+    encoding.jpeg_quality = 80;
   }
   return encoding;
 }

@@ -7,6 +7,7 @@
 #include "proto/wire/rvl.h"
 #include "server/convert/frame_header.h"
 #include "server/convert/value.h"
+#include "server/streams/reduce.h"
 
 namespace vs {
 namespace {
@@ -31,11 +32,11 @@ void AddBytesField(int field, WireSlice bytes, WireMessage* message) {
 }
 
 template <class Pixel>
-WireSlice RawSlice(const Image<Pixel>& image, const std::shared_ptr<const Sample>& sample) {
+WireSlice RawSlice(const Image<Pixel>& image, const std::shared_ptr<const void>& owner) {
   const size_t row_bytes = static_cast<size_t>(image.width()) * sizeof(Pixel);
   const auto* pixels = reinterpret_cast<const char*>(image.Row(0));
   if (image.stride_bytes() == row_bytes && image.buffer().place != Place::kForeign) {
-    return {.data = pixels, .size_bytes = row_bytes * image.height(), .owner = sample};
+    return {.data = pixels, .size_bytes = row_bytes * image.height(), .owner = owner};
   }
   std::string bytes;
   bytes.reserve(row_bytes * image.height());
@@ -90,16 +91,28 @@ Status FrameEncoder::Build(Parts* parts) {
   }
   if (const auto* map = value.GetIf<DisparityMap>()) return Add(*map, parts);
   if (const auto* map = value.GetIf<DepthMap>()) return Add(*map, parts);
-  if (const auto* image = value.GetIf<GreyImage>()) return Add(*image, parts);
-  if (const auto* image = value.GetIf<ColorImage>()) return Add(*image, parts);
-  if (const auto* frame = value.GetIf<Frame>()) return Add(frame->image, parts);
-  if (const auto* pair = value.GetIf<StereoFrame>()) return Add(pair->left->image, parts);
+  if (const auto* image = value.GetIf<GreyImage>()) return AddPicture(*image, parts);
+  if (const auto* image = value.GetIf<ColorImage>()) return AddPicture(*image, parts);
+  if (const auto* frame = value.GetIf<Frame>()) return AddPicture(frame->image, parts);
+  if (const auto* pair = value.GetIf<StereoFrame>()) return AddPicture(pair->left->image, parts);
   *parts->item.mutable_value() = ToProto(value);
   return Status();
 }
 
-Status FrameEncoder::Add(const DisparityMap& map, Parts* parts) {
+template <class Pixel>
+int FrameEncoder::ChooseStep(const Image<Pixel>& image, Parts* parts) {
+  parts->step = ReducingStep(image.width(), parts->encoding.max_width_px);
+  parts->item.mutable_header()->set_step(static_cast<uint32_t>(parts->step));
+  return parts->step;
+}
+
+Status FrameEncoder::Add(DisparityMap map, Parts* parts) {
   pb::FrameHeader* header = parts->item.mutable_header();
+  if (const int step = ChooseStep(map.disparity, parts); step > 1) {
+    map.disparity = Nearest(map.disparity, step, pool_);
+    if (parts->encoding.confidence) map.confidence = Nearest(map.confidence, step, pool_);
+    if (parts->encoding.reasons) map.reason = Nearest(map.reason, step, pool_);
+  }
   Describe(map.disparity, sizeof(uint16_t), header);
   header->set_value_scale(1.0 / kDisparityScale);
   header->set_value_offset(map.offset_px);
@@ -115,13 +128,16 @@ Status FrameEncoder::Add(const DisparityMap& map, Parts* parts) {
   return Status();
 }
 
-Status FrameEncoder::Add(const DepthMap& map, Parts* parts) {
+Status FrameEncoder::Add(DepthMap map, Parts* parts) {
   pb::FrameHeader* header = parts->item.mutable_header();
+  if (const int step = ChooseStep(map.depth_m, parts); step > 1) {
+    map.depth_m = Nearest(map.depth_m, step, pool_);
+  }
   *header->mutable_geometry() = ToProto(map.geometry);
   WireSlice payload;
   if (parts->encoding.codec == pb::CODEC_RAW) {
     Describe(map.depth_m, sizeof(float), header);
-    payload = RawSlice(map.depth_m, parts->sample);
+    payload = RawSlice(map.depth_m, OwnerOf(map.depth_m, *parts));
   } else {
     ToSteps(map.depth_m, &depth_steps_);
     Describe(map.depth_m, sizeof(uint16_t), header);
@@ -134,27 +150,32 @@ Status FrameEncoder::Add(const DepthMap& map, Parts* parts) {
   return Status();
 }
 
-Status FrameEncoder::Add(const GreyImage& image, Parts* parts) { return AddPicture(image, parts); }
-
-Status FrameEncoder::Add(const ColorImage& image, Parts* parts) { return AddPicture(image, parts); }
-
 template <class Pixel>
-Status FrameEncoder::AddPicture(const Image<Pixel>& image, Parts* parts) {
+Status FrameEncoder::AddPicture(Image<Pixel> image, Parts* parts) {
+  if (const int step = ChooseStep(image, parts); step > 1) image = Mean(image, step, pool_);
   Describe(image, sizeof(Pixel), parts->item.mutable_header());
   WireSlice payload;
   if (parts->encoding.codec == pb::CODEC_JPEG) {
-    VS_RETURN_IF_ERROR(jpeg_.Encode(image, parts->encoding.jpeg_quality, &scratch_));
+    const auto quality = static_cast<int>(parts->encoding.jpeg_quality);
+    VS_RETURN_IF_ERROR(jpeg_.Encode(image, quality, &scratch_));
     payload = CopyOf(scratch_, scratch_.size());
   } else {
-    payload = RawSlice(image, parts->sample);
+    payload = RawSlice(image, OwnerOf(image, *parts));
   }
   AddBytesField(pb::StreamItem::kPayloadFieldNumber, std::move(payload), &parts->planes);
   return Status();
 }
 
+// What keeps the pixels while they are sent: those that were published, or the reduced ones.
+template <class Pixel>
+std::shared_ptr<const void> FrameEncoder::OwnerOf(const Image<Pixel>& image, const Parts& parts) {
+  if (parts.step > 1) return image.buffer().owner;
+  return parts.sample;
+}
+
 template <class Pixel>
 WireSlice FrameEncoder::Plane(const Image<Pixel>& image, const Parts& parts) {
-  if (parts.encoding.codec == pb::CODEC_RAW) return RawSlice(image, parts.sample);
+  if (parts.encoding.codec == pb::CODEC_RAW) return RawSlice(image, OwnerOf(image, parts));
   return Pack(image.Row(0), static_cast<size_t>(image.width()), static_cast<size_t>(image.height()),
               image.stride_bytes(), parts.encoding.codec);
 }

@@ -8,6 +8,7 @@
 #include "engine/base/clock.h"
 #include "engine/base/status.h"
 #include "engine/core/topic.h"
+#include "engine/image/buffer.h"
 #include "proto/wire/zstd.h"
 #include "server/rpc/wire_message.h"
 #include "server/streams/depth_steps.h"
@@ -41,17 +42,20 @@ class FrameEncoder {
   struct Parts {
     std::shared_ptr<const Sample> sample;
     Encoding encoding;
+    int step = 1;                       // FrameHeader.step
     visionserver::v1::StreamItem item;  // without the planes
     WireMessage planes;                 // fields of the item, each as tag and bytes
   };
 
   Status Build(Parts* parts);
-  Status Add(const DisparityMap& map, Parts* parts);
-  Status Add(const DepthMap& map, Parts* parts);
-  Status Add(const GreyImage& image, Parts* parts);
-  Status Add(const ColorImage& image, Parts* parts);
   template <class Pixel>
-  Status AddPicture(const Image<Pixel>& image, Parts* parts);
+  static int ChooseStep(const Image<Pixel>& image, Parts* parts);
+  template <class Pixel>
+  static std::shared_ptr<const void> OwnerOf(const Image<Pixel>& image, const Parts& parts);
+  Status Add(DisparityMap map, Parts* parts);
+  Status Add(DepthMap map, Parts* parts);
+  template <class Pixel>
+  Status AddPicture(Image<Pixel> image, Parts* parts);
   // The image as the codec wants it: raw, as RVL, or as RVL and zstd.
   template <class Pixel>
   WireSlice Plane(const Image<Pixel>& image, const Parts& parts);
@@ -60,6 +64,7 @@ class FrameEncoder {
                  visionserver::v1::Codec codec);
 
   const Clock& clock_;
+  BufferPool pool_;  // of reduced images
   JpegEncoder jpeg_;
   wire::ZstdPacker zstd_;
   DepthSteps depth_steps_;

@@ -81,8 +81,7 @@ std::optional<WireMessage> Subscriber::NextOf(Entry* entry, int64_t now_ns) {
     return notice(entry->channel->absence());
   }
   if (const pb::StreamKind kind = entry->channel->kind(); kind != entry->kind || !entry->encoding) {
-    const auto encoding = Resolve(kind, wanted.codec(), wanted.include_confidence(),
-                                  wanted.include_reasons(), wanted.jpeg_quality());
+    const auto encoding = Resolve(kind, WantedBy(wanted));
     if (!encoding) return notice(encoding.error().message());
     entry->kind = kind;
     entry->encoding = *encoding;

@@ -163,6 +163,77 @@ TEST_F(FrameEncoderTest, PicturesTravelAsJpegOrRaw) {
   EXPECT_NEAR(90, pixels[2], 4);
 }
 
+TEST_F(FrameEncoderTest, AReducedMapHasEveryNthPixelWithItsPlanes) {
+  const DisparityMap map = test::MapOf(61, 17, 3);
+  for (const pb::Codec codec : CodecsOf(pb::STREAM_KIND_DISPARITY)) {
+    const pb::StreamItem item = EncodeAs(
+        {.codec = codec, .confidence = true, .reasons = true, .max_width_px = 20}, Shared(map));
+    // 61 / 20 is more than 3, so each fourth pixel: 0, 4 ... 60 and 0, 4 ... 16.
+    EXPECT_EQ(4u, item.header().step());
+    ASSERT_EQ(16u, item.header().width());
+    ASSERT_EQ(5u, item.header().height());
+    EXPECT_EQ(16u * 5 * 2, item.header().raw_bytes());
+    EXPECT_EQ(1.0 / 16, item.header().value_scale());
+    EXPECT_EQ(-3, item.header().value_offset());
+    EXPECT_EQ(600, item.header().geometry().focal_px());
+    const std::vector<uint16_t> disparity = UnpackDisparity(item);
+    ASSERT_EQ(80u, disparity.size());
+    for (int y = 0; y < 5; ++y) {
+      for (int x = 0; x < 16; ++x) {
+        EXPECT_EQ(map.disparity.Row(4 * y)[4 * x], disparity[y * 16 + x]) << x << " " << y;
+      }
+    }
+    if (codec != pb::CODEC_RAW) continue;
+    ASSERT_EQ(80u, item.reasons().size());
+    EXPECT_EQ(map.confidence.Row(4)[8], static_cast<uint8_t>(item.confidence()[16 + 2]));
+    EXPECT_EQ(map.reason.Row(16)[60], static_cast<uint8_t>(item.reasons()[79]));
+  }
+}
+
+TEST_F(FrameEncoderTest, ReducedDepthKeepsItsValues) {
+  DepthMap map;
+  map.depth_m = Image<float>(pool_, 4, 2);
+  const float depth[] = {0.5F, 9, 2, 9, 9, 9, 9, 9};
+  std::memcpy(map.depth_m.Row(0), depth, sizeof depth);
+  const pb::StreamItem raw = EncodeAs({.codec = pb::CODEC_RAW, .max_width_px = 2}, Shared(map));
+  const float half[] = {0.5F, 2};
+  EXPECT_EQ(std::string_view(reinterpret_cast<const char*>(half), sizeof half), raw.payload());
+  const pb::StreamItem rvl = EncodeAs({.codec = pb::CODEC_RVL, .max_width_px = 2}, Shared(map));
+  EXPECT_EQ((std::vector<uint16_t>{5000, 20000}), UnpackDisparity(rvl));
+  EXPECT_DOUBLE_EQ(1e-4, rvl.header().value_scale());
+}
+
+TEST_F(FrameEncoderTest, AReducedPictureHasTheMeanOfItsPixels) {
+  GreyImage grey(pool_, 5, 3);
+  for (int y = 0; y < 3; ++y) {
+    for (int x = 0; x < 5; ++x) grey.Row(y)[x] = static_cast<uint8_t>(10 * x + y);
+  }
+  const pb::StreamItem item = EncodeAs({.codec = pb::CODEC_RAW, .max_width_px = 3}, Shared(grey));
+  EXPECT_EQ(2u, item.header().step());
+  EXPECT_EQ(3u, item.header().width());
+  EXPECT_EQ(2u, item.header().height());
+  // (0 + 10 + 1 + 11) / 4 = 5.5, rounded up; the last column and row stand for fewer.
+  EXPECT_EQ(std::string({6, 26, 41, 7, 27, 42}), item.payload());
+
+  ColorImage colour(pool_, 2, 1);
+  colour.Row(0)[0] = {0, 100, 255};
+  colour.Row(0)[1] = {10, 200, 255};
+  EXPECT_EQ("\x05\x96\xff",
+            EncodeAs({.codec = pb::CODEC_RAW, .max_width_px = 1}, Shared(colour)).payload());
+  const pb::StreamItem jpeg =
+      EncodeAs({.codec = pb::CODEC_JPEG, .jpeg_quality = 90, .max_width_px = 1}, Shared(colour));
+  EXPECT_EQ(1u, jpeg.header().width());
+}
+
+TEST_F(FrameEncoderTest, WhatIsSmallEnoughIsNotReduced) {
+  for (const uint32_t max_width_px : {0u, 61u, 4'000'000'000u}) {
+    const pb::StreamItem item = EncodeAs({.codec = pb::CODEC_RVL, .max_width_px = max_width_px},
+                                         Shared(test::MapOf(61, 17, 3)));
+    EXPECT_EQ(1u, item.header().step());
+    EXPECT_EQ(61u, item.header().width());
+  }
+}
+
 TEST_F(FrameEncoderTest, CameraFramesAndPairsAreGreyPictures) {
   Frame frame;
   frame.image = GreyImage(pool_, 8, 4);
@@ -216,22 +287,26 @@ TEST_F(FrameEncoderTest, ACodecThatDoesNotFitIsRefused) {
 }
 
 TEST(Encoding, FillsInTheServersChoices) {
-  const Encoding disparity =
-      Resolve(pb::STREAM_KIND_DISPARITY, pb::CODEC_UNSPECIFIED, true, false, 50).value();
-  EXPECT_EQ((Encoding{.codec = pb::CODEC_RVL, .confidence = true}), disparity);
+  const Encoding disparity = Resolve(pb::STREAM_KIND_DISPARITY,
+                                     {.confidence = true, .jpeg_quality = 50, .max_width_px = 9})
+                                 .value();
+  EXPECT_EQ((Encoding{.codec = pb::CODEC_RVL, .confidence = true, .max_width_px = 9}), disparity);
   const Encoding picture =
-      Resolve(pb::STREAM_KIND_GREY_PICTURE, pb::CODEC_UNSPECIFIED, true, true, 0).value();
+      Resolve(pb::STREAM_KIND_GREY_PICTURE, {.confidence = true, .reasons = true}).value();
   EXPECT_EQ((Encoding{.codec = pb::CODEC_JPEG, .jpeg_quality = 80}), picture);
-  EXPECT_EQ(Encoding(), Resolve(pb::STREAM_KIND_VALUE, pb::CODEC_JPEG, true, true, 0).value());
+  EXPECT_EQ(Encoding(), Resolve(pb::STREAM_KIND_VALUE,
+                                {.codec = pb::CODEC_JPEG, .reasons = true, .max_width_px = 9})
+                            .value());
 }
 
 TEST(Encoding, RefusesWhatDoesNotFitAndSaysWhatDoes) {
-  const auto picture = Resolve(pb::STREAM_KIND_GREY_PICTURE, pb::CODEC_RVL, false, false, 0);
+  const auto picture = Resolve(pb::STREAM_KIND_GREY_PICTURE, {.codec = pb::CODEC_RVL});
   EXPECT_EQ(StatusCode::kInvalidArgument, picture.error().code());
   EXPECT_THAT(picture.error().message(), HasSubstr("CODEC_JPEG, CODEC_RAW, not as CODEC_RVL"));
-  EXPECT_FALSE(Resolve(pb::STREAM_KIND_DISPARITY, pb::CODEC_JPEG, false, false, 0));
-  EXPECT_FALSE(Resolve(pb::STREAM_KIND_GREY_PICTURE, pb::CODEC_JPEG, false, false, 101));
-  EXPECT_FALSE(Resolve(KindOf("stereo_rig"), pb::CODEC_RAW, false, false, 0));
+  EXPECT_FALSE(Resolve(pb::STREAM_KIND_DISPARITY, {.codec = pb::CODEC_JPEG}));
+  EXPECT_FALSE(
+      Resolve(pb::STREAM_KIND_GREY_PICTURE, {.codec = pb::CODEC_JPEG, .jpeg_quality = 101}));
+  EXPECT_FALSE(Resolve(KindOf("stereo_rig"), {.codec = pb::CODEC_RAW}));
 }
 
 }  // namespace

@@ -82,6 +82,27 @@ TEST_F(Taps, GoOnWhenTheSequenceIsStartedAgain) {
   }
 }
 
+TEST_F(Taps, ComeAsSmallAsTheyAreDrawn) {
+  CreateMatch();
+  ASSERT_TRUE(Start("match").ok());
+  pb::Subscription preview = Wish(1, "match/source.pair");
+  preview.set_max_width_px(200);
+  pb::Subscription map = Wish(2, "match/source.pair");
+  map.set_codec(pb::CODEC_RAW);
+  StreamClient client(server_.Connect(), operator_, {preview, map});
+  uint32_t small = 0;
+  uint32_t whole = 0;
+  while (small == 0 || whole == 0) {
+    pb::StreamItem item;
+    ASSERT_TRUE(client.Take(&item));
+    const pb::FrameHeader& header = item.header();
+    (item.subscription_id() == 1 ? small : whole) = header.width();
+    EXPECT_EQ(item.subscription_id() == 1 ? 4u : 1u, header.step());
+  }
+  EXPECT_EQ(648u, whole);
+  EXPECT_EQ(162u, small);  // 648 / 4
+}
+
 TEST_F(Taps, AreWaitedForByGetLatest) {
   CreateMatch();
   ASSERT_TRUE(Start("match").ok());
