@@ -1,19 +1,24 @@
 import { Role } from '../gen/visionserver/v1/session_pb';
 
-/** Key of a role's name in the shell's texts. */
-export function roleKey(role: Role) {
+/** A role as it is named in keys of texts. */
+export function roleName(role: Role) {
   switch (role) {
     case Role.VIEWER:
-      return 'role.viewer';
+      return 'viewer';
     case Role.OPERATOR:
-      return 'role.operator';
+      return 'operator';
     case Role.ENGINEER:
-      return 'role.engineer';
+      return 'engineer';
     case Role.ADMIN:
-      return 'role.admin';
+      return 'admin';
     case Role.ROBOT:
-      return 'role.robot';
+      return 'robot';
     default:
-      return 'role.unknown';
+      return 'unknown';
   }
+}
+
+/** Key of a role's name in the shell's texts. */
+export function roleKey(role: Role) {
+  return `role.${roleName(role)}` as const;
 }

@@ -1,0 +1,65 @@
+import { Button, Table, Text } from '@mantine/core';
+import { useTranslation } from 'react-i18next';
+import { api } from '../api/clients';
+import { ErrorNote, notifyError } from '../shell/ErrorNote';
+import { formatTime, none } from '../shell/format';
+import { roleKey } from '../shell/roles';
+import { useAllSessions, useChange } from './queries';
+
+/** Everybody's sessions; each can be ended, but one's own ends by logging out. */
+export function SessionTable() {
+  const { t } = useTranslation(['admin', 'shell']);
+  const sessions = useAllSessions();
+  const revoke = useChange((sessionId: string) => api.sessions.revokeSession({ sessionId }), {
+    onError: notifyError,
+  });
+  return (
+    <>
+      <ErrorNote error={sessions.error} />
+      <Table.ScrollContainer minWidth={720}>
+        <Table>
+          <Table.Thead>
+            <Table.Tr>
+              <Table.Th>{t('user')}</Table.Th>
+              <Table.Th>{t('role')}</Table.Th>
+              <Table.Th>{t('address')}</Table.Th>
+              <Table.Th>{t('client')}</Table.Th>
+              <Table.Th>{t('lastUsed')}</Table.Th>
+              <Table.Th>{t('endsAt')}</Table.Th>
+              <Table.Th aria-label={t('actions')} />
+            </Table.Tr>
+          </Table.Thead>
+          <Table.Tbody>
+            {sessions.data?.sessions.map((session) => (
+              <Table.Tr key={session.id}>
+                <Table.Td fw={600}>{session.user}</Table.Td>
+                <Table.Td>{t(`shell:${roleKey(session.role)}`)}</Table.Td>
+                <Table.Td>{session.address || none}</Table.Td>
+                <Table.Td>{session.client || none}</Table.Td>
+                <Table.Td>{formatTime(session.lastUsed)}</Table.Td>
+                <Table.Td>{formatTime(session.expires)}</Table.Td>
+                <Table.Td ta="right">
+                  {session.current ? (
+                    <Text size="sm" c="dimmed">
+                      {t('thisSession')}
+                    </Text>
+                  ) : (
+                    <Button
+                      size="xs"
+                      variant="default"
+                      loading={revoke.isPending && revoke.variables === session.id}
+                      onClick={() => revoke.mutate(session.id)}
+                      aria-label={t('endSessionOf', { name: session.user })}
+                    >
+                      {t('endSession')}
+                    </Button>
+                  )}
+                </Table.Td>
+              </Table.Tr>
+            ))}
+          </Table.Tbody>
+        </Table>
+      </Table.ScrollContainer>
+    </>
+  );
+}

@@ -1,0 +1,156 @@
+import { Button, Group, NativeSelect, Table, Text } from '@mantine/core';
+import { useState } from 'react';
+import { useTranslation } from 'react-i18next';
+import { api } from '../api/clients';
+import { useSession } from '../api/session';
+import type { Role } from '../gen/visionserver/v1/session_pb';
+import type { User } from '../gen/visionserver/v1/user_pb';
+import { ConfirmDialog } from '../shell/ConfirmDialog';
+import { ErrorNote, notifyError } from '../shell/ErrorNote';
+import { formatTime, none } from '../shell/format';
+import { PlusIcon } from '../shell/icons';
+import { CreateUserDialog } from './CreateUserDialog';
+import { useChange, useUsers } from './queries';
+import { type Secret, SecretDialog } from './SecretDialog';
+import { UserActions, type UserAction } from './UserActions';
+import { useRoleChoices } from './useRoleChoices';
+
+/** State of an account in words: locked, disabled, waiting for its first password, or fine. */
+function AccountState({ user }: { user: User }) {
+  const { t } = useTranslation('admin');
+  if (user.disabled) return <Text size="sm">{t('disabled')}</Text>;
+  if (user.lockedUntil) {
+    return (
+      <Text size="sm" c="var(--vs-bad)">
+        {t('lockedUntil', { time: formatTime(user.lockedUntil) })}
+      </Text>
+    );
+  }
+  return <Text size="sm">{user.mustChangePassword ? t('oneTimePassword') : t('active')}</Text>;
+}
+
+/** All users, and what an administrator does with them. */
+export function UserTable() {
+  const { t } = useTranslation('admin');
+  const me = useSession((state) => state.login?.user);
+  const users = useUsers();
+  const roles = useRoleChoices();
+  const [creating, setCreating] = useState(false);
+  const [secret, setSecret] = useState<Secret>();
+  const [asked, setAsked] = useState<{ action: 'delete' | 'resetPassword'; user: User }>();
+
+  const update = useChange(
+    ({ user, ...change }: { user: User; role?: Role; disabled?: boolean }) =>
+      api.users.updateUser({ name: user.name, etag: user.etag, ...change }),
+    { onError: notifyError },
+  );
+  const unlock = useChange((name: string) => api.users.unlockUser({ name }), {
+    onError: notifyError,
+  });
+  const showPassword = (name: string, password: string) =>
+    setSecret({ title: t('passwordOf', { name }), text: t('passwordText'), secret: password });
+  const confirmed = useChange(
+    async ({ action, user }: { action: 'delete' | 'resetPassword'; user: User }) => {
+      if (action === 'delete') {
+        await api.users.deleteUser({ name: user.name });
+      } else {
+        const answer = await api.users.resetPassword({ name: user.name });
+        showPassword(user.name, answer.oneTimePassword);
+      }
+    },
+    { onSuccess: () => setAsked(undefined) },
+  );
+
+  const act = (action: UserAction, user: User) => {
+    switch (action) {
+      case 'enable':
+      case 'disable':
+        return update.mutate({ user, disabled: action === 'disable' });
+      case 'unlock':
+        return unlock.mutate(user.name);
+      case 'resetPassword':
+      case 'delete':
+        confirmed.reset();
+        return setAsked({ action, user });
+    }
+  };
+
+  return (
+    <>
+      <Group justify="flex-end" mb="sm">
+        <Button leftSection={<PlusIcon />} onClick={() => setCreating(true)}>
+          {t('newUser')}
+        </Button>
+      </Group>
+      <ErrorNote error={users.error} />
+      <Table.ScrollContainer minWidth={720}>
+        <Table>
+          <Table.Thead>
+            <Table.Tr>
+              <Table.Th>{t('name')}</Table.Th>
+              <Table.Th>{t('fullName')}</Table.Th>
+              <Table.Th>{t('role')}</Table.Th>
+              <Table.Th>{t('state')}</Table.Th>
+              <Table.Th>{t('lastLogin')}</Table.Th>
+              <Table.Th aria-label={t('actions')} />
+            </Table.Tr>
+          </Table.Thead>
+          <Table.Tbody>
+            {users.data?.users.map((user) => (
+              <Table.Tr key={user.name}>
+                <Table.Td fw={600}>
+                  {user.name}
+                  {user.name === me && (
+                    <Text span size="sm" c="dimmed">
+                      {' '}
+                      {t('you')}
+                    </Text>
+                  )}
+                </Table.Td>
+                <Table.Td>{user.fullName || none}</Table.Td>
+                <Table.Td>
+                  <NativeSelect
+                    size="xs"
+                    w={150}
+                    data={roles}
+                    value={String(user.role)}
+                    aria-label={t('roleOf', { name: user.name })}
+                    onChange={(event) =>
+                      update.mutate({ user, role: Number(event.currentTarget.value) })
+                    }
+                  />
+                </Table.Td>
+                <Table.Td>
+                  <AccountState user={user} />
+                </Table.Td>
+                <Table.Td>{formatTime(user.lastLogin)}</Table.Td>
+                <Table.Td ta="right">
+                  <UserActions user={user} onAction={act} />
+                </Table.Td>
+              </Table.Tr>
+            ))}
+          </Table.Tbody>
+        </Table>
+      </Table.ScrollContainer>
+      <CreateUserDialog
+        opened={creating}
+        onCancel={() => setCreating(false)}
+        onCreated={(answer) => {
+          setCreating(false);
+          showPassword(answer.user?.name ?? '', answer.oneTimePassword);
+        }}
+      />
+      <ConfirmDialog
+        opened={asked !== undefined}
+        title={t(`${asked?.action ?? 'delete'}Title`, { name: asked?.user.name ?? '' })}
+        text={t(`${asked?.action ?? 'delete'}Text`)}
+        action={t(asked?.action ?? 'delete')}
+        pending={confirmed.isPending}
+        error={confirmed.error}
+        onConfirm={() => asked && confirmed.mutate(asked)}
+        onCancel={() => setAsked(undefined)}
+      />
+      <SecretDialog shown={secret} onClose={() => setSecret(undefined)} />
+    </>
+  );
+}

@@ -1,0 +1,42 @@
+import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
+import { api } from '../api/clients';
+
+const kRefreshMs = 5000;
+const kTimeoutMs = 10_000;
+
+export function useUsers() {
+  return useQuery({
+    queryKey: ['admin', 'users'],
+    queryFn: ({ signal }) => api.users.listUsers({}, { signal, timeoutMs: kTimeoutMs }),
+    refetchInterval: kRefreshMs,
+  });
+}
+
+export function useAllSessions() {
+  return useQuery({
+    queryKey: ['admin', 'sessions'],
+    queryFn: ({ signal }) => api.users.listSessions({}, { signal, timeoutMs: kTimeoutMs }),
+    refetchInterval: kRefreshMs,
+  });
+}
+
+export function useApiKeys() {
+  return useQuery({
+    queryKey: ['admin', 'keys'],
+    queryFn: ({ signal }) => api.users.listApiKeys({}, { signal, timeoutMs: kTimeoutMs }),
+    refetchInterval: kRefreshMs,
+  });
+}
+
+/** A call that changes something; all tables here are asked for anew after it. */
+export function useChange<Argument, Answer>(
+  call: (argument: Argument) => Promise<Answer>,
+  handlers: { onSuccess?: (answer: Answer) => void; onError?: (error: unknown) => void } = {},
+) {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: call,
+    ...handlers,
+    onSettled: () => client.invalidateQueries({ queryKey: ['admin'] }),
+  });
+}
