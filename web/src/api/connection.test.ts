@@ -49,7 +49,7 @@ describe('a kept stream', () => {
     return {
       opened: () => opened,
       // eslint-disable-next-line @typescript-eslint/require-await
-      open: async function* () {
+      open: async function* (this: void) {
         for (const item of all[opened++] ?? []) {
           if (item instanceof Error) throw item;
           yield item;
