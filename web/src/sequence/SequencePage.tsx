@@ -34,5 +34,6 @@ export default function SequencePage() {
     );
   }
   const { sequence, blockTypes } = query.data;
-  return <SequenceView key={id} sequence={sequence} blockTypes={blockTypes} />;
+  if (!sequence.spec) return null;
+  return <SequenceView key={id} sequence={sequence} spec={sequence.spec} blockTypes={blockTypes} />;
 }
