@@ -1,5 +1,5 @@
-import { Tabs } from '@mantine/core';
-import { useEffect, useMemo, useState } from 'react';
+import { Loader, Tabs } from '@mantine/core';
+import { lazy, Suspense, useEffect, useMemo, useState } from 'react';
 import { useTranslation } from 'react-i18next';
 import type { BlockType, Sequence, SequenceSpec } from '../gen/visionserver/v1/sequence_pb';
 import { ParameterForm } from './form/ParameterForm';
@@ -9,6 +9,9 @@ import { SequenceHeader } from './SequenceHeader';
 import { isRunning, useSequenceState } from './useSequenceState';
 import { LiveScene } from './view/liveScene';
 import { PicturePanel } from './view/PicturePanel';
+
+// Large libraries, and not needed for the first picture.
+const CloudPanel = lazy(() => import('./cloud/CloudPanel'));
 
 interface Props {
   sequence: Sequence;
@@ -20,6 +23,7 @@ interface Props {
 export function SequenceView({ sequence: { id }, spec, blockTypes }: Props) {
   const { t } = useTranslation('sequence');
   const [scene] = useState(() => new LiveScene());
+  const [measuring, setMeasuring] = useState(false);
   const { data: state } = useSequenceState(id);
   const { map, picture } = useMemo(() => {
     const outputs = outputsOf(id, spec, blockTypes);
@@ -38,9 +42,22 @@ export function SequenceView({ sequence: { id }, spec, blockTypes }: Props) {
         <Tabs defaultValue="pictures" keepMounted={false} className={classes.tabs}>
           <Tabs.List>
             <Tabs.Tab value="pictures">{t('tab.pictures')}</Tabs.Tab>
+            {map && <Tabs.Tab value="cloud">{t('tab.cloud')}</Tabs.Tab>}
           </Tabs.List>
           <Tabs.Panel value="pictures" className={classes.panel}>
-            <PicturePanel scene={scene} map={map?.path} picture={picture?.path} />
+            <PicturePanel
+              sequence={id}
+              scene={scene}
+              map={map?.path}
+              picture={picture?.path}
+              measuring={measuring}
+              setMeasuring={setMeasuring}
+            />
+          </Tabs.Panel>
+          <Tabs.Panel value="cloud" className={classes.panel}>
+            <Suspense fallback={<Loader />}>
+              <CloudPanel scene={scene} measuring={measuring} setMeasuring={setMeasuring} />
+            </Suspense>
           </Tabs.Panel>
         </Tabs>
         <aside className={classes.aside}>

@@ -9,17 +9,16 @@ interface Props {
   what: 'map' | 'picture';
   label: string;
   onChoose: (pixel: Pixel) => void;
-  onMoved: () => void;
   /** Lies over the picture. */
   children?: ReactNode;
 }
 
 /** One of the pictures that zoom and pan together. */
-export function ImageView({ scene, what, label, onChoose, onMoved, children }: Props) {
+export function ImageView({ scene, what, label, onChoose, children }: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
-  const actions = useRef({ onChoose, onMoved });
+  const action = useRef(onChoose);
   useEffect(() => {
-    actions.current = { onChoose, onMoved };
+    action.current = onChoose;
   });
 
   useEffect(() => {
@@ -30,10 +29,7 @@ export function ImageView({ scene, what, label, onChoose, onMoved, children }: P
       if (entry) painter.resize(entry.contentRect.width, entry.contentRect.height);
     });
     sizes.observe(element.parentElement ?? element);
-    const endPointing = listenToPointing(element, scene, {
-      onChoose: (pixel) => actions.current.onChoose(pixel),
-      onMoved: () => actions.current.onMoved(),
-    });
+    const endPointing = listenToPointing(element, scene, (pixel) => action.current(pixel));
     return () => {
       endPointing();
       sizes.disconnect();

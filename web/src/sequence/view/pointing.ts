@@ -5,18 +5,14 @@ const KEY_ZOOM = 1.5;
 // A press that moves less than this is a click.
 const CLICK_PX = 4;
 
-export interface PointingActions {
-  /** A pixel was chosen by a click or by Enter. */
-  onChoose(pixel: Pixel): void;
-  /** The crosshair was moved by a key. */
-  onMoved(): void;
-}
-
-/** Wheel, drag, pinch, click and keys on a canvas that shows the scene's viewport. */
+/**
+ * Wheel, drag, pinch, click and keys on a canvas that shows the scene's viewport. `onChoose` is told
+ * of a pixel that is clicked, or chosen by Enter.
+ */
 export function listenToPointing(
   canvas: HTMLCanvasElement,
   scene: Scene,
-  actions: PointingActions,
+  onChoose: (pixel: Pixel) => void,
 ): () => void {
   const { viewport } = scene;
   const pressed = new Map<number, { x: number; y: number }>();
@@ -70,7 +66,7 @@ export function listenToPointing(
     const at = pressed.get(event.pointerId);
     pressed.delete(event.pointerId);
     const pixel = at && pixelAt(at);
-    if (pixel && travelled_px < CLICK_PX && event.type === 'pointerup') actions.onChoose(pixel);
+    if (pixel && travelled_px < CLICK_PX && event.type === 'pointerup') onChoose(pixel);
   };
   const onLeave = () => scene.hover(undefined);
   const onDoubleClick = () => viewport.fit();
@@ -82,7 +78,6 @@ export function listenToPointing(
     const to = { x: within(from.x + dx, width), y: within(from.y + dy, height) };
     scene.pin(to);
     viewport.reveal(to.x, to.y);
-    actions.onMoved();
   };
   const onKey = (event: KeyboardEvent) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
@@ -96,7 +91,7 @@ export function listenToPointing(
       '=': () => zoomAtCrosshair(KEY_ZOOM),
       '-': () => zoomAtCrosshair(1 / KEY_ZOOM),
       '0': () => viewport.fit(),
-      Enter: () => scene.cursor && actions.onChoose(scene.cursor),
+      Enter: () => scene.cursor && onChoose(scene.cursor),
       Escape: () => {
         scene.clearMarks();
         scene.pin(undefined);

@@ -1,0 +1,151 @@
+import { Alert, Button, Group, Switch } from '@mantine/core';
+import { useEffect, useRef, useState } from 'react';
+import { useTranslation } from 'react-i18next';
+import type { LiveScene } from '../view/liveScene';
+import { MeasureButton } from '../view/MeasureButton';
+import { StaleOverlay } from '../view/StaleOverlay';
+import { Choice } from '../view/Choice';
+import { ColorMapChoice } from '../view/ColorMapChoice';
+import classes from './cloud.module.css';
+import { colorings } from './cloudMaterial';
+import { type CloudOptions, CloudRenderer } from './cloudRenderer';
+import { webGl } from './webGl';
+
+interface Props {
+  scene: LiveScene;
+  measuring: boolean;
+  setMeasuring: (measuring: boolean) => void;
+}
+
+// A press that moves less than this is a click.
+const CLICK_PX = 4;
+
+/** The newest map as points in space. */
+export default function CloudPanel({ scene, measuring, setMeasuring }: Props) {
+  const { t } = useTranslation('sequence');
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const renderer = useRef<CloudRenderer>(undefined);
+  const [drawnBy] = useState(webGl);
+  const [options, setOptions] = useState<CloudOptions>({
+    coloring: 'depth',
+    pointSize_px: 2,
+    axes: true,
+    // Without a graphics card all points at once would be a slide show.
+    step: drawnBy === 'software' ? 2 : 1,
+  });
+  const change = (part: Partial<CloudOptions>) => setOptions((now) => ({ ...now, ...part }));
+
+  useEffect(() => {
+    const element = canvas.current;
+    if (!element) return;
+    const made = new CloudRenderer(element, scene);
+    renderer.current = made;
+    const sizes = new ResizeObserver(([entry]) => {
+      if (entry) made.resize(entry.contentRect.width, entry.contentRect.height);
+    });
+    sizes.observe(element.parentElement ?? element);
+    return () => {
+      sizes.disconnect();
+      made.end();
+      renderer.current = undefined;
+    };
+  }, [scene]);
+
+  useEffect(() => renderer.current?.setOptions(options), [options, scene]);
+
+  useEffect(() => {
+    const element = canvas.current;
+    if (!element || !measuring) return;
+    const ended = new AbortController();
+    const { signal } = ended;
+    let pressed: PointerEvent | undefined;
+    const mark = (x: number, y: number) => {
+      const pixel = renderer.current?.pixelAt(x, y);
+      if (pixel) scene.mark(pixel);
+    };
+    element.addEventListener('pointerdown', (event) => (pressed = event), { signal });
+    element.addEventListener(
+      'pointerup',
+      (event) => {
+        const moved =
+          !pressed ||
+          Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) > CLICK_PX;
+        if (moved) return;
+        const box = element.getBoundingClientRect();
+        mark(event.clientX - box.left, event.clientY - box.top);
+      },
+      { signal },
+    );
+    // By keys: what is in the middle.
+    element.addEventListener(
+      'keydown',
+      (event) => {
+        if (event.key === 'Enter') mark(element.clientWidth / 2, element.clientHeight / 2);
+      },
+      { signal },
+    );
+    return () => ended.abort();
+  }, [scene, measuring]);
+
+  if (drawnBy === 'none') return <Alert color="yellow">{t('cloud.noWebGl')}</Alert>;
+  return (
+    <>
+      <Group gap="sm" role="toolbar" aria-label={t('cloud.toolbar')}>
+        <Choice
+          label={t('cloud.coloring')}
+          value={options.coloring}
+          choices={colorings.map((value) => [value, t(`cloud.by.${value}`)])}
+          onChoose={(coloring) => change({ coloring })}
+        />
+        {options.coloring !== 'picture' && <ColorMapChoice />}
+        <Choice
+          label={t('cloud.density')}
+          value={String(options.step)}
+          choices={[1, 2, 3, 4].map((step) => [
+            String(step),
+            step === 1 ? t('cloud.all') : t('cloud.every', { count: step * step }),
+          ])}
+          onChoose={(step) => change({ step: Number(step) })}
+        />
+        <label className={classes.size}>
+          {t('cloud.pointSize')}
+          <input
+            type="range"
+            min={1}
+            max={8}
+            step={0.5}
+            value={options.pointSize_px}
+            onChange={(event) => change({ pointSize_px: Number(event.currentTarget.value) })}
+          />
+        </label>
+        <Switch
+          size="xs"
+          label={t('cloud.axes')}
+          checked={options.axes}
+          onChange={(event) => change({ axes: event.currentTarget.checked })}
+        />
+        <Button size="compact-sm" variant="default" onClick={() => renderer.current?.reset()}>
+          {t('cloud.reset')}
+        </Button>
+        <MeasureButton scene={scene} on={measuring} setOn={setMeasuring} />
+      </Group>
+      <div className={classes.box}>
+        <canvas
+          ref={canvas}
+          className={classes.canvas}
+          tabIndex={0}
+          role="img"
+          aria-label={t('cloud.label')}
+          data-testid="view-cloud"
+          onKeyDown={(event) => {
+            if (event.key === '+' || event.key === '=') renderer.current?.zoom(true);
+            if (event.key === '-') renderer.current?.zoom(false);
+            if (event.key === '0') renderer.current?.reset();
+          }}
+        />
+        <StaleOverlay scene={scene} view="map" />
+      </div>
+      <p className={classes.help}>{t('cloud.help')}</p>
+    </>
+  );
+}
