@@ -8,6 +8,7 @@ import { ErrorNote } from '../shell/ErrorNote';
 import { formatTime } from '../shell/format';
 import { PlusIcon } from '../shell/icons';
 import { roleKey } from '../shell/roles';
+import { HiddenTh, WideTable } from '../shell/WideTable';
 import { CreateApiKeyDialog } from './CreateApiKeyDialog';
 import { useApiKeys, useChange } from './queries';
 import { type Secret, SecretDialog } from './SecretDialog';
@@ -33,46 +34,44 @@ export function ApiKeyTable() {
         </Button>
       </Group>
       <ErrorNote error={keys.error} />
-      <Table.ScrollContainer minWidth={720}>
-        <Table>
-          <Table.Thead>
-            <Table.Tr>
-              <Table.Th>{t('name')}</Table.Th>
-              <Table.Th>{t('role')}</Table.Th>
-              <Table.Th>{t('created')}</Table.Th>
-              <Table.Th>{t('createdBy')}</Table.Th>
-              <Table.Th>{t('lastUsed')}</Table.Th>
-              <Table.Th>{t('endsAt')}</Table.Th>
-              <Table.Th aria-label={t('actions')} />
+      <WideTable label={t('keys')}>
+        <Table.Thead>
+          <Table.Tr>
+            <Table.Th>{t('name')}</Table.Th>
+            <Table.Th>{t('role')}</Table.Th>
+            <Table.Th>{t('created')}</Table.Th>
+            <Table.Th>{t('createdBy')}</Table.Th>
+            <Table.Th>{t('lastUsed')}</Table.Th>
+            <Table.Th>{t('endsAt')}</Table.Th>
+            <HiddenTh>{t('actions')}</HiddenTh>
+          </Table.Tr>
+        </Table.Thead>
+        <Table.Tbody>
+          {keys.data?.keys.map((key) => (
+            <Table.Tr key={key.id}>
+              <Table.Td fw={600}>{key.name}</Table.Td>
+              <Table.Td>{t(`shell:${roleKey(key.role)}`)}</Table.Td>
+              <Table.Td>{formatTime(key.created)}</Table.Td>
+              <Table.Td>{key.createdBy}</Table.Td>
+              <Table.Td>{formatTime(key.lastUsed)}</Table.Td>
+              <Table.Td>{key.expires ? formatTime(key.expires) : t('never')}</Table.Td>
+              <Table.Td ta="right">
+                <Button
+                  size="xs"
+                  variant="default"
+                  onClick={() => {
+                    revoke.reset();
+                    setRevoking(key);
+                  }}
+                  aria-label={t('revokeNamed', { name: key.name })}
+                >
+                  {t('revoke')}
+                </Button>
+              </Table.Td>
             </Table.Tr>
-          </Table.Thead>
-          <Table.Tbody>
-            {keys.data?.keys.map((key) => (
-              <Table.Tr key={key.id}>
-                <Table.Td fw={600}>{key.name}</Table.Td>
-                <Table.Td>{t(`shell:${roleKey(key.role)}`)}</Table.Td>
-                <Table.Td>{formatTime(key.created)}</Table.Td>
-                <Table.Td>{key.createdBy}</Table.Td>
-                <Table.Td>{formatTime(key.lastUsed)}</Table.Td>
-                <Table.Td>{key.expires ? formatTime(key.expires) : t('never')}</Table.Td>
-                <Table.Td ta="right">
-                  <Button
-                    size="xs"
-                    variant="default"
-                    onClick={() => {
-                      revoke.reset();
-                      setRevoking(key);
-                    }}
-                    aria-label={t('revokeNamed', { name: key.name })}
-                  >
-                    {t('revoke')}
-                  </Button>
-                </Table.Td>
-              </Table.Tr>
-            ))}
-          </Table.Tbody>
-        </Table>
-      </Table.ScrollContainer>
+          ))}
+        </Table.Tbody>
+      </WideTable>
       <CreateApiKeyDialog
         opened={creating}
         onCancel={() => setCreating(false)}

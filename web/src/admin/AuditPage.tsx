@@ -8,6 +8,7 @@ import { api } from '../api/clients';
 import { ErrorNote } from '../shell/ErrorNote';
 import { formatTime, none } from '../shell/format';
 import { usePageTitle } from '../shell/usePageTitle';
+import { WideTable } from '../shell/WideTable';
 
 const kPageSize = 100;
 const kTypingMs = 300;
@@ -56,43 +57,47 @@ export default function AuditPage() {
         {t('audit')}
       </Title>
       <Group align="flex-end" mb="md">
-        <TextInput w={160} {...field('user')} />
-        <TextInput w={220} placeholder="StartSequence" {...field('method')} />
-        <TextInput type="datetime-local" {...field('from')} />
-        <TextInput type="datetime-local" {...field('until')} />
+        <TextInput w={130} {...field('user')} />
+        <TextInput w={190} placeholder="StartSequence" {...field('method')} />
+        <TextInput w={215} type="datetime-local" {...field('from')} />
+        <TextInput w={215} type="datetime-local" {...field('until')} />
         <Button variant="default" loading={entries.isRefetching} onClick={() => entries.refetch()}>
           {t('refresh')}
         </Button>
       </Group>
       <ErrorNote error={entries.error} />
-      <Table.ScrollContainer minWidth={900}>
-        <Table>
-          <Table.Thead>
-            <Table.Tr>
-              <Table.Th>{t('time')}</Table.Th>
-              <Table.Th>{t('user')}</Table.Th>
-              <Table.Th>{t('address')}</Table.Th>
-              <Table.Th>{t('method')}</Table.Th>
-              <Table.Th>{t('subject')}</Table.Th>
-              <Table.Th>{t('outcome')}</Table.Th>
+      <WideTable label={t('audit')}>
+        <Table.Thead>
+          <Table.Tr>
+            <Table.Th>{t('time')}</Table.Th>
+            <Table.Th>{t('user')}</Table.Th>
+            <Table.Th>{t('address')}</Table.Th>
+            <Table.Th>{t('method')}</Table.Th>
+            <Table.Th>{t('subject')}</Table.Th>
+            <Table.Th>{t('outcome')}</Table.Th>
+          </Table.Tr>
+        </Table.Thead>
+        <Table.Tbody>
+          {rows.map((entry) => (
+            <Table.Tr key={String(entry.number)}>
+              <Table.Td style={{ whiteSpace: 'nowrap' }}>{formatTime(entry.time)}</Table.Td>
+              <Table.Td fw={600}>{entry.user || none}</Table.Td>
+              <Table.Td>{entry.address || none}</Table.Td>
+              <Table.Td title={entry.method}>{shortMethod(entry.method)}</Table.Td>
+              <Table.Td style={{ overflowWrap: 'anywhere' }}>{entry.subject || none}</Table.Td>
+              <Table.Td>
+                {entry.ok ? (
+                  t('ok')
+                ) : (
+                  <Text size="sm" c="var(--vs-bad)">
+                    {entry.message}
+                  </Text>
+                )}
+              </Table.Td>
             </Table.Tr>
-          </Table.Thead>
-          <Table.Tbody>
-            {rows.map((entry) => (
-              <Table.Tr key={String(entry.number)}>
-                <Table.Td style={{ whiteSpace: 'nowrap' }}>{formatTime(entry.time)}</Table.Td>
-                <Table.Td fw={600}>{entry.user || none}</Table.Td>
-                <Table.Td>{entry.address || none}</Table.Td>
-                <Table.Td title={entry.method}>{shortMethod(entry.method)}</Table.Td>
-                <Table.Td style={{ overflowWrap: 'anywhere' }}>{entry.subject || none}</Table.Td>
-                <Table.Td>
-                  {entry.ok ? t('ok') : <Text size="sm" c="var(--vs-bad)">{entry.message}</Text>}
-                </Table.Td>
-              </Table.Tr>
-            ))}
-          </Table.Tbody>
-        </Table>
-      </Table.ScrollContainer>
+          ))}
+        </Table.Tbody>
+      </WideTable>
       {entries.isSuccess && rows.length === 0 && <Text c="dimmed">{t('noEntries')}</Text>}
       {entries.hasNextPage && (
         <Button

@@ -44,6 +44,7 @@ function CreateUserForm({
         />
         <TextInput
           label={t('fullName')}
+          description={t('fullNameHelp')}
           value={fullName}
           onChange={(event) => setFullName(event.currentTarget.value)}
           autoComplete="off"

@@ -9,6 +9,7 @@ import { ConfirmDialog } from '../shell/ConfirmDialog';
 import { ErrorNote, notifyError } from '../shell/ErrorNote';
 import { formatTime, none } from '../shell/format';
 import { PlusIcon } from '../shell/icons';
+import { HiddenTh, WideTable } from '../shell/WideTable';
 import { CreateUserDialog } from './CreateUserDialog';
 import { useChange, useUsers } from './queries';
 import { type Secret, SecretDialog } from './SecretDialog';
@@ -83,55 +84,53 @@ export function UserTable() {
         </Button>
       </Group>
       <ErrorNote error={users.error} />
-      <Table.ScrollContainer minWidth={720}>
-        <Table>
-          <Table.Thead>
-            <Table.Tr>
-              <Table.Th>{t('name')}</Table.Th>
-              <Table.Th>{t('fullName')}</Table.Th>
-              <Table.Th>{t('role')}</Table.Th>
-              <Table.Th>{t('state')}</Table.Th>
-              <Table.Th>{t('lastLogin')}</Table.Th>
-              <Table.Th aria-label={t('actions')} />
+      <WideTable label={t('users')}>
+        <Table.Thead>
+          <Table.Tr>
+            <Table.Th>{t('name')}</Table.Th>
+            <Table.Th>{t('fullName')}</Table.Th>
+            <Table.Th>{t('role')}</Table.Th>
+            <Table.Th>{t('state')}</Table.Th>
+            <Table.Th>{t('lastLogin')}</Table.Th>
+            <HiddenTh>{t('actions')}</HiddenTh>
+          </Table.Tr>
+        </Table.Thead>
+        <Table.Tbody>
+          {users.data?.users.map((user) => (
+            <Table.Tr key={user.name}>
+              <Table.Td fw={600}>
+                {user.name}
+                {user.name === me && (
+                  <Text span size="sm" c="dimmed">
+                    {' '}
+                    {t('you')}
+                  </Text>
+                )}
+              </Table.Td>
+              <Table.Td>{user.fullName || none}</Table.Td>
+              <Table.Td>
+                <NativeSelect
+                  size="xs"
+                  w={150}
+                  data={roles}
+                  value={String(user.role)}
+                  aria-label={t('roleOf', { name: user.name })}
+                  onChange={(event) =>
+                    update.mutate({ user, role: Number(event.currentTarget.value) })
+                  }
+                />
+              </Table.Td>
+              <Table.Td>
+                <AccountState user={user} />
+              </Table.Td>
+              <Table.Td>{formatTime(user.lastLogin)}</Table.Td>
+              <Table.Td ta="right">
+                <UserActions user={user} onAction={act} />
+              </Table.Td>
             </Table.Tr>
-          </Table.Thead>
-          <Table.Tbody>
-            {users.data?.users.map((user) => (
-              <Table.Tr key={user.name}>
-                <Table.Td fw={600}>
-                  {user.name}
-                  {user.name === me && (
-                    <Text span size="sm" c="dimmed">
-                      {' '}
-                      {t('you')}
-                    </Text>
-                  )}
-                </Table.Td>
-                <Table.Td>{user.fullName || none}</Table.Td>
-                <Table.Td>
-                  <NativeSelect
-                    size="xs"
-                    w={150}
-                    data={roles}
-                    value={String(user.role)}
-                    aria-label={t('roleOf', { name: user.name })}
-                    onChange={(event) =>
-                      update.mutate({ user, role: Number(event.currentTarget.value) })
-                    }
-                  />
-                </Table.Td>
-                <Table.Td>
-                  <AccountState user={user} />
-                </Table.Td>
-                <Table.Td>{formatTime(user.lastLogin)}</Table.Td>
-                <Table.Td ta="right">
-                  <UserActions user={user} onAction={act} />
-                </Table.Td>
-              </Table.Tr>
-            ))}
-          </Table.Tbody>
-        </Table>
-      </Table.ScrollContainer>
+          ))}
+        </Table.Tbody>
+      </WideTable>
       <CreateUserDialog
         opened={creating}
         onCancel={() => setCreating(false)}

@@ -7,6 +7,7 @@ export const en = {
   name: 'Name',
   nameHelp: '1 to 64 of a-z, 0-9, dot, underscore, hyphen; begins with a letter; never changes.',
   fullName: 'Full name',
+  fullNameHelp: 'For people; may stay empty.',
   role: 'Role',
   roleOf: 'Role of {{name}}',
   roleHelp: {
@@ -82,13 +83,16 @@ export const de: typeof en = {
   keys: 'API-Schlüssel',
   audit: 'Protokoll',
   name: 'Name',
-  nameHelp: '1 bis 64 aus a-z, 0-9, Punkt, Unterstrich, Bindestrich; beginnt mit einem Buchstaben; ändert sich nie.',
+  nameHelp:
+    '1 bis 64 aus a-z, 0-9, Punkt, Unterstrich, Bindestrich; beginnt mit einem Buchstaben; ändert sich nie.',
   fullName: 'Voller Name',
+  fullNameHelp: 'Für Menschen; darf leer bleiben.',
   role: 'Rolle',
   roleOf: 'Rolle von {{name}}',
   roleHelp: {
     viewer: 'Sieht alles, ändert nichts.',
-    operator: 'Startet und stoppt Sequenzen, stellt die Parameter ein, die für Bediener gedacht sind.',
+    operator:
+      'Startet und stoppt Sequenzen, stellt die Parameter ein, die für Bediener gedacht sind.',
     engineer: 'Bearbeitet Sequenzen, Parameter und Kameras.',
     admin: 'Verwaltet Benutzer, Schlüssel und den Server selbst.',
     robot: 'Startet, stoppt und löst aus, liest Ergebnisse und Ströme.',
@@ -110,12 +114,15 @@ export const de: typeof en = {
   unlock: 'Entsperren',
   resetPassword: 'Passwort zurücksetzen',
   resetPasswordTitle: 'Passwort von {{name}} zurücksetzen?',
-  resetPasswordText: 'Alle Sitzungen dieses Benutzers enden. Sie erhalten ein neues Einmalpasswort zum Weitergeben.',
+  resetPasswordText:
+    'Alle Sitzungen dieses Benutzers enden. Sie erhalten ein neues Einmalpasswort zum Weitergeben.',
   delete: 'Löschen',
   deleteTitle: '{{name}} löschen?',
-  deleteText: 'Alle Sitzungen dieses Benutzers enden. Um jemanden nur eine Weile fernzuhalten, schalten Sie ihn ab.',
+  deleteText:
+    'Alle Sitzungen dieses Benutzers enden. Um jemanden nur eine Weile fernzuhalten, schalten Sie ihn ab.',
   passwordOf: 'Einmalpasswort von {{name}}',
-  passwordText: 'Geben Sie es weiter. Es gilt für eine Anmeldung binnen 24 Stunden, die nach einem neuen fragt.',
+  passwordText:
+    'Geben Sie es weiter. Es gilt für eine Anmeldung binnen 24 Stunden, die nach einem neuen fragt.',
   onlyOnce: 'Es wird nur dieses eine Mal gezeigt.',
   copy: 'Kopieren',
   copied: 'Kopiert',
@@ -128,7 +135,8 @@ export const de: typeof en = {
   thisSession: 'diese Sitzung',
   endSession: 'Beenden',
   endSessionOf: 'Sitzung von {{name}} beenden',
-  keysText: 'Mit einem Schlüssel ruft ein Roboter oder eine andere Maschine den Server ohne Anmeldung.',
+  keysText:
+    'Mit einem Schlüssel ruft ein Roboter oder eine andere Maschine den Server ohne Anmeldung.',
   newKey: 'Neuer Schlüssel',
   keyNameHelp: 'Für Menschen und Aufzeichnungen, etwa „Roboterzelle 7“.',
   endsHelp: 'Leer: endet nicht von selbst.',

@@ -3,7 +3,11 @@ import { describe, expect, it } from 'vitest';
 import { headingOf, isConnectionLost, messageOf, reasonOf } from './errors';
 import { ErrorDetailSchema } from '../gen/visionserver/v1/error_pb';
 
-const withDetail = (code: Code, reason: string, faults: { subject: string; message: string }[] = []) => {
+const withDetail = (
+  code: Code,
+  reason: string,
+  faults: { subject: string; message: string }[] = [],
+) => {
   const error = new ConnectError('the sequence has faults', code, undefined, [
     { desc: ErrorDetailSchema, value: { domain: 'vs', reason, faults } },
   ]);

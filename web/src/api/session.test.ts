@@ -50,6 +50,10 @@ describe.each([
   { role: Role.ADMIN, operate: true, engineer: true, admin: true },
 ])('role $role', ({ role, operate, engineer, admin }) => {
   it('sees what it may use', () => {
-    expect([mayOperate(role), mayEngineer(role), isAdmin(role)]).toEqual([operate, engineer, admin]);
+    expect([mayOperate(role), mayEngineer(role), isAdmin(role)]).toEqual([
+      operate,
+      engineer,
+      admin,
+    ]);
   });
 });

@@ -116,7 +116,8 @@ it('a stream that breaks because the session has ended says so to the session', 
   valid = 'second';
   const seen: string[] = [];
   const watch = async () => {
-    for await (const state of api.sequences.watchSequence({ id: 'depth' })) seen.push(state.sequence);
+    for await (const state of api.sequences.watchSequence({ id: 'depth' }))
+      seen.push(state.sequence);
   };
   await expect(watch()).rejects.toMatchObject({ code: Code.Unauthenticated });
   expect(seen).toEqual(['depth']);

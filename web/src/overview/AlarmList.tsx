@@ -23,7 +23,10 @@ export function AlarmList({ alarms }: { alarms: Alarm[] }) {
         return (
           <li key={alarm.id}>
             <Group gap="md" wrap="nowrap" align="flex-start">
-              <StateMark level={grave ? 'bad' : 'warning'} label={t(grave ? 'alarmError' : 'alarmWarning')} />
+              <StateMark
+                level={grave ? 'bad' : 'warning'}
+                label={t(grave ? 'alarmError' : 'alarmWarning')}
+              />
               <div>
                 <Text size="sm" style={{ overflowWrap: 'anywhere' }}>
                   <strong>{alarm.id}</strong>: {alarm.message}

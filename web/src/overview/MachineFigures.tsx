@@ -73,9 +73,12 @@ export function MachineFigures() {
       />
       <Figure
         label={t('disk')}
-        value={formatBytes(resources.diskFreeBytes)}
+        value={formatBytes(resources.diskTotalBytes - resources.diskFreeBytes)}
         part={used(resources.diskTotalBytes, resources.diskFreeBytes)}
-        detail={t('diskDetail', { total: formatBytes(resources.diskTotalBytes) })}
+        detail={t('diskDetail', {
+          total: formatBytes(resources.diskTotalBytes),
+          free: formatBytes(resources.diskFreeBytes),
+        })}
       />
       <Figure
         label={t('uptime')}

@@ -7,6 +7,7 @@ import { SequenceRunState } from '../gen/visionserver/v1/sequence_pb';
 import { ConfirmDialog } from '../shell/ConfirmDialog';
 import { formatNumber, none } from '../shell/format';
 import { PlayIcon, StopIcon } from '../shell/icons';
+import { HiddenTh, WideTable } from '../shell/WideTable';
 import { type SequenceRow, useSetRunning } from './queries';
 import { StateMark } from './StateMark';
 import { describeRunState, isActive } from './states';
@@ -21,8 +22,8 @@ export function SequenceTable({ rows }: { rows: SequenceRow[] }) {
   const [stopping, setStopping] = useState<string>();
   const busy = (id: string) => setRunning.isPending && setRunning.variables.id === id;
   return (
-    <Table.ScrollContainer minWidth={720}>
-      <Table verticalSpacing="xs">
+    <>
+      <WideTable label={t('sequences')}>
         <Table.Thead>
           <Table.Tr>
             <Table.Th>{t('sequence')}</Table.Th>
@@ -33,7 +34,7 @@ export function SequenceTable({ rows }: { rows: SequenceRow[] }) {
             <Table.Th ta="right">{t('frames')}</Table.Th>
             <Table.Th ta="right">{t('dropped')}</Table.Th>
             <Table.Th ta="right">{t('failed')}</Table.Th>
-            {operator && <Table.Th aria-label={t('startOrStop')} />}
+            {operator && <HiddenTh>{t('startOrStop')}</HiddenTh>}
           </Table.Tr>
         </Table.Thead>
         <Table.Tbody>
@@ -43,7 +44,7 @@ export function SequenceTable({ rows }: { rows: SequenceRow[] }) {
             return (
               <Table.Tr key={sequence.id}>
                 <Table.Td>
-                  <Anchor component={Link} to={`/sequence/${sequence.id}`} fw={600}>
+                  <Anchor component={Link} to={`/sequence/${sequence.id}`} fw={600} size="sm">
                     {sequence.id}
                   </Anchor>
                   {sequence.autostart && (
@@ -55,7 +56,12 @@ export function SequenceTable({ rows }: { rows: SequenceRow[] }) {
                 <Table.Td>
                   <StateMark level={described.level} label={t(described.key)} />
                   {state?.lastError && (
-                    <Text size="xs" c="var(--vs-bad)" maw={420} style={{ overflowWrap: 'anywhere' }}>
+                    <Text
+                      size="xs"
+                      c="var(--vs-bad)"
+                      maw={420}
+                      style={{ overflowWrap: 'anywhere' }}
+                    >
                       {state.lastError.path}: {state.lastError.message}
                     </Text>
                   )}
@@ -99,7 +105,7 @@ export function SequenceTable({ rows }: { rows: SequenceRow[] }) {
             );
           })}
         </Table.Tbody>
-      </Table>
+      </WideTable>
       <ConfirmDialog
         opened={stopping !== undefined}
         title={t('stopTitle', { name: stopping ?? '' })}
@@ -111,6 +117,6 @@ export function SequenceTable({ rows }: { rows: SequenceRow[] }) {
         }}
         onCancel={() => setStopping(undefined)}
       />
-    </Table.ScrollContainer>
+    </>
   );
 }

@@ -17,7 +17,9 @@ export function StateMark({ level, label }: { level: Level; label: string }) {
     <Group gap={6} wrap="nowrap" c={colour}>
       <svg viewBox="0 0 10 10" width="10" height="10" aria-hidden="true">
         {level === 'good' && <circle cx="5" cy="5" r="4.5" fill={colour} />}
-        {level === 'off' && <circle cx="5" cy="5" r="3.5" fill="none" stroke={colour} strokeWidth="1.5" />}
+        {level === 'off' && (
+          <circle cx="5" cy="5" r="3.5" fill="none" stroke={colour} strokeWidth="1.5" />
+        )}
         {level === 'bad' && <rect width="10" height="10" fill={colour} />}
         {(level === 'warning' || level === 'busy') && <path d="M5 0 10 9.5H0z" fill={colour} />}
       </svg>

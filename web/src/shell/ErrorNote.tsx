@@ -10,7 +10,13 @@ export function ErrorNote({ error }: { error: unknown }) {
   const { t } = useTranslation('shell');
   if (!error) return null;
   return (
-    <Alert role="alert" color="red" variant="outline" icon={<AlertIcon />} title={t(headingOf(error))}>
+    <Alert
+      role="alert"
+      color="red"
+      variant="outline"
+      icon={<AlertIcon />}
+      title={t(headingOf(error))}
+    >
       <span style={{ whiteSpace: 'pre-line' }}>{messageOf(error)}</span>
     </Alert>
   );

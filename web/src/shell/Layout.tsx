@@ -57,7 +57,7 @@ export function Layout() {
       <AppShell.Header>
         <Group h="100%" px="md" wrap="nowrap" justify="space-between">
           <Group h="100%" gap="lg" wrap="nowrap">
-            <Anchor component={Link} to="/" c="inherit" underline="never" aria-label={t('home')}>
+            <Anchor component={Link} to="/" c="inherit" underline="never" title={t('home')}>
               <Group gap="xs" wrap="nowrap">
                 <Logo />
                 <Text fw={600} truncate maw={220}>
