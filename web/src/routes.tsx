@@ -1,5 +1,5 @@
 import { lazy, type ReactNode } from 'react';
-import { createBrowserRouter, Navigate } from 'react-router';
+import { Navigate } from 'react-router';
 import { isAdmin, useRole } from './api/session';
 import { Layout } from './shell/Layout';
 import { LoginPage } from './shell/LoginPage';
@@ -50,5 +50,3 @@ export const routes = [
     ],
   },
 ];
-
-export const createRouter = () => createBrowserRouter(routes);
