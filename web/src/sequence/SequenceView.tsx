@@ -11,6 +11,7 @@ import { LiveScene } from './view/liveScene';
 import { PicturePanel } from './view/PicturePanel';
 
 // Large libraries, and not needed for the first picture.
+const GraphPanel = lazy(() => import('./graph/GraphPanel'));
 const CloudPanel = lazy(() => import('./cloud/CloudPanel'));
 
 interface Props {
@@ -23,26 +24,36 @@ interface Props {
 export function SequenceView({ sequence: { id }, spec, blockTypes }: Props) {
   const { t } = useTranslation('sequence');
   const [scene] = useState(() => new LiveScene());
+  const [tab, setTab] = useState('pictures');
   const [measuring, setMeasuring] = useState(false);
+  const [filter, setFilter] = useState('');
   const { data: state } = useSequenceState(id);
-  const { map, picture } = useMemo(() => {
-    const outputs = outputsOf(id, spec, blockTypes);
-    const shown = mainMap(outputs, spec);
-    return { map: shown, picture: mainPicture(outputs, spec, shown) };
+  const { outputs, map, picture } = useMemo(() => {
+    const all = outputsOf(id, spec, blockTypes);
+    const shown = mainMap(all, spec);
+    return { outputs: all, map: shown, picture: mainPicture(all, spec, shown) };
   }, [id, spec, blockTypes]);
+  // The graph has small pictures of its own.
+  const watching = tab !== 'graph';
   useEffect(
-    () => scene.watch({ map: map?.stream, picture: picture?.stream }),
-    [scene, map?.stream, picture?.stream],
+    () => (watching ? scene.watch({ map: map?.stream, picture: picture?.stream }) : undefined),
+    [scene, watching, map?.stream, picture?.stream],
   );
 
   return (
     <div className={classes.page}>
       <SequenceHeader id={id} description={spec.description} state={state} scene={scene} />
       <div className={classes.columns}>
-        <Tabs defaultValue="pictures" keepMounted={false} className={classes.tabs}>
+        <Tabs
+          value={tab}
+          onChange={(next) => setTab(next ?? 'pictures')}
+          keepMounted={false}
+          className={classes.tabs}
+        >
           <Tabs.List>
             <Tabs.Tab value="pictures">{t('tab.pictures')}</Tabs.Tab>
             {map && <Tabs.Tab value="cloud">{t('tab.cloud')}</Tabs.Tab>}
+            <Tabs.Tab value="graph">{t('tab.graph')}</Tabs.Tab>
           </Tabs.List>
           <Tabs.Panel value="pictures" className={classes.panel}>
             <PicturePanel
@@ -59,6 +70,17 @@ export function SequenceView({ sequence: { id }, spec, blockTypes }: Props) {
               <CloudPanel scene={scene} measuring={measuring} setMeasuring={setMeasuring} />
             </Suspense>
           </Tabs.Panel>
+          <Tabs.Panel value="graph" className={classes.panel}>
+            <Suspense fallback={<Loader />}>
+              <GraphPanel
+                spec={spec}
+                blockTypes={blockTypes}
+                outputs={outputs}
+                state={state}
+                onChoose={(block) => setFilter(`${block}.`)}
+              />
+            </Suspense>
+          </Tabs.Panel>
         </Tabs>
         <aside className={classes.aside}>
           <ParameterForm
@@ -66,6 +88,8 @@ export function SequenceView({ sequence: { id }, spec, blockTypes }: Props) {
             spec={spec}
             blockTypes={blockTypes}
             running={isRunning(state?.state)}
+            filter={filter}
+            setFilter={setFilter}
           />
         </aside>
       </div>

@@ -83,6 +83,11 @@ export const en = {
     help: 'Drag turns, right button or Shift moves, wheel zooms. Keys: arrows, Shift and arrows, + and –, 0 resets.',
     noWebGl: 'This browser cannot draw in three dimensions (WebGL 2).',
   },
+  graph: {
+    label: 'Blocks of the sequence and their connections',
+    preview: 'Output {{output}}, live',
+    time: 'Time of one run, the middle one of the last 256',
+  },
   colorMap: { turbo: 'Turbo', viridis: 'Viridis', grey: 'Grey', hue: 'Hue' },
   inspector: {
     x: 'x',
@@ -194,6 +199,11 @@ export const de: typeof en = {
     reset: 'Ansicht zurück',
     help: 'Ziehen dreht, rechte Taste oder Umschalt verschiebt, Rad vergrößert. Tasten: Pfeile, Umschalt und Pfeile, + und –, 0 setzt zurück.',
     noWebGl: 'Dieser Browser kann nicht dreidimensional zeichnen (WebGL 2).',
+  },
+  graph: {
+    label: 'Blöcke der Sequenz und ihre Verbindungen',
+    preview: 'Ausgang {{output}}, live',
+    time: 'Dauer eines Laufs, der mittlere der letzten 256',
   },
   colorMap: { turbo: 'Turbo', viridis: 'Viridis', grey: 'Grau', hue: 'Farbton' },
   inspector: {

@@ -11,14 +11,16 @@ interface Props {
   spec: SequenceSpec;
   blockTypes: BlockType[];
   running: boolean;
+  filter: string;
+  setFilter: (filter: string) => void;
 }
 
 /** All parameters of a sequence, as the block types describe them. */
-export function ParameterForm({ sequence, spec, blockTypes, running }: Props) {
+export function ParameterForm(props: Props) {
+  const { sequence, spec, blockTypes, running, filter, setFilter } = props;
   const { t } = useTranslation('sequence');
   const editor = useParameterEditor(sequence);
   const paths = usePaths(editor);
-  const [filter, setFilter] = useState('');
   const [explained, setExplained] = useState(false);
 
   const wanted = filter.trim().toLowerCase();

@@ -5,14 +5,14 @@ import { parseNumber } from '../form/value';
 import { useDisplay } from './display';
 import { depth_m } from './geometry';
 import type { Scene } from './scene';
-import classes from './view.module.css';
 
 const LEAST_M = 0.01;
 const STEP_M = 0.05;
 
 /** From which to which depth the colours run: as the map has it, or fixed. */
 export function RangeFields({ scene }: { scene: Scene }) {
-  const { t } = useTranslation('sequence');
+  const { t, i18n } = useTranslation('sequence');
+  const format = new Intl.NumberFormat(i18n.language, { maximumFractionDigits: 3 });
   const { fixedRange, set } = useDisplay();
   const round = (value: number) => Math.max(LEAST_M, Math.round(value * 100) / 100);
 
@@ -35,11 +35,11 @@ export function RangeFields({ scene }: { scene: Scene }) {
   };
   const field = (name: 'near_m' | 'far_m', label: string) => (
     <TypedText
-      className={classes.depth}
+      style={{ width: 58, textAlign: 'right' }}
       inputMode="decimal"
       aria-label={label}
       title={label}
-      value={String(fixedRange?.[name] ?? '')}
+      value={format.format(fixedRange?.[name] ?? 0)}
       accept={(text) => change({ [name]: parseNumber(text) ?? NaN })}
       onStep={(direction) => change({ [name]: round((fixedRange?.[name] ?? 0) + direction * STEP_M) })}
     />

@@ -4,6 +4,7 @@ import { ColorMapChoice } from './ColorMapChoice';
 import { RangeFields } from './RangeFields';
 import { useDisplay } from './display';
 import type { Scene } from './scene';
+import classes from './view.module.css';
 
 const ZOOM_STEP = 1.5;
 
@@ -24,7 +25,7 @@ export function ViewToolbar({ scene, maps }: Props) {
     ['+', t('view.zoomIn'), () => viewport.zoom(ZOOM_STEP)],
   ] as const;
   return (
-    <Group gap="sm" role="toolbar" aria-label={t('view.toolbar')}>
+    <Group gap="sm" role="toolbar" className={classes.toolbar} aria-label={t('view.toolbar')}>
       {maps && (
         <>
           <ColorMapChoice />

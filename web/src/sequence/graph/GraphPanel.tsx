@@ -1,0 +1,86 @@
+import '@xyflow/react/dist/style.css';
+import { useComputedColorScheme } from '@mantine/core';
+import { Background, Controls, type Edge, ReactFlow } from '@xyflow/react';
+import { useMemo } from 'react';
+import { useTranslation } from 'react-i18next';
+import type { BlockType, SequenceSpec, SequenceState } from '../../gen/visionserver/v1/sequence_pb';
+import type { Output } from '../outputs';
+import { arrange } from './arrange';
+import { BlockNode, type BlockNodeType, BlockStates } from './BlockNode';
+import { blocksOf, type GraphBlock, hasPlaces, portColor, WIDTH_PX } from './graph';
+import classes from './graph.module.css';
+
+interface Props {
+  spec: SequenceSpec;
+  blockTypes: BlockType[];
+  outputs: Output[];
+  state: SequenceState | undefined;
+  /** A block was chosen by a click or by Enter. */
+  onChoose: (block: string) => void;
+}
+
+const nodeTypes = { block: BlockNode };
+
+/** The blocks of a sequence and how they are connected, with what they are doing. */
+export default function GraphPanel({ spec, blockTypes, outputs, state, onChoose }: Props) {
+  const { t } = useTranslation('sequence');
+  const colorMode = useComputedColorScheme('dark');
+  const { nodes, edges } = useMemo(() => {
+    const placed = blocksOf(spec, blockTypes, outputs);
+    const blocks = hasPlaces(spec) ? placed : arrange(placed, spec.connections);
+    return { nodes: blocks.map(nodeOf), edges: edgesOf(spec, blocks) };
+  }, [spec, blockTypes, outputs]);
+  const states = useMemo(
+    () => new Map(state?.blocks.map((block) => [block.block, block])),
+    [state],
+  );
+  return (
+    <div className={classes.graph} data-testid="graph">
+      <BlockStates value={states}>
+        <ReactFlow
+          nodes={nodes}
+          edges={edges}
+          nodeTypes={nodeTypes}
+          colorMode={colorMode}
+          aria-label={t('graph.label')}
+          fitView
+          minZoom={0.2}
+          maxZoom={2}
+          nodesDraggable={false}
+          nodesConnectable={false}
+          edgesFocusable={false}
+          onlyRenderVisibleElements
+          onNodeClick={(_, node) => onChoose(node.id)}
+          onSelectionChange={({ nodes: [chosen] }) => chosen && onChoose(chosen.id)}
+        >
+          <Background />
+          <Controls showInteractive={false} />
+        </ReactFlow>
+      </BlockStates>
+    </div>
+  );
+}
+
+function nodeOf(block: GraphBlock): BlockNodeType {
+  return {
+    id: block.id,
+    type: 'block',
+    position: { x: block.x, y: block.y },
+    width: WIDTH_PX,
+    height: block.height,
+    data: { block },
+    ariaLabel: `${block.id}, ${block.type}`,
+  };
+}
+
+function edgesOf(spec: SequenceSpec, blocks: GraphBlock[]): Edge[] {
+  return spec.connections.map(({ from, to }) => {
+    const [source = '', sourceHandle = ''] = from.split('.');
+    const [target = '', targetHandle = ''] = to.split('.');
+    const port = blocks
+      .find(({ id }) => id === source)
+      ?.outputs.find(({ name }) => name === sourceHandle);
+    const style = { stroke: portColor(port?.type ?? ''), strokeWidth: 2 };
+    return { id: `${from} ${to}`, source, sourceHandle, target, targetHandle, style };
+  });
+}
