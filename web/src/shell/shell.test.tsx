@@ -144,7 +144,7 @@ describe('a session that has ended', () => {
     await userEvent.click(start);
 
     const dialog = await screen.findByRole('dialog', { name: 'Log in again' });
-    expect((within(dialog).getByLabelText('User') as HTMLInputElement).value).toBe('otto');
+    expect(within(dialog).getByLabelText<HTMLInputElement>('User').value).toBe('otto');
     await userEvent.keyboard('{Escape}'); // does not get around it
     await userEvent.type(within(dialog).getByLabelText('Password'), 'one-time{Enter}');
     await waitFor(() => expect(started).toEqual(['depth']));

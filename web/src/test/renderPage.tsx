@@ -1,12 +1,23 @@
 import '../i18n';
 import { render } from '@testing-library/react';
-import { createMemoryRouter } from 'react-router';
-import { routes } from '../routes';
+import { MemoryRouter, useLocation } from 'react-router';
+import { Pages } from '../routes';
 import { App } from '../shell/App';
 
 /** Opens the whole page at an address, as the browser would. */
 export function renderPage(address: string) {
-  const router = createMemoryRouter(routes, { initialEntries: [address] });
-  render(<App router={router} env="test" />);
-  return { path: () => router.state.location.pathname };
+  let path = '';
+  function Probe() {
+    path = useLocation().pathname;
+    return null;
+  }
+  render(
+    <App env="test">
+      <MemoryRouter initialEntries={[address]}>
+        <Pages />
+        <Probe />
+      </MemoryRouter>
+    </App>,
+  );
+  return { path: () => path };
 }
