@@ -83,7 +83,7 @@ Status Vision::MakeServices(const config::ServerConfig& config, const Clock& clo
   parameter_service_ = std::make_unique<ParameterService>(*manager_);
   stream_service_ = std::make_unique<StreamService>(*streams_, clock);
   camera_service_ = std::make_unique<CameraService>(cameras_, *manager_, std::move(cameras), clock);
-  VS_ASSIGN_OR_RETURN(result_service_, ResultService::Make(*results_, clock));
+  VS_ASSIGN_OR_RETURN(result_service_, ResultService::Make(*results_, folders_.data_dir, clock));
   return Status();
 }
 

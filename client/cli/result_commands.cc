@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 
@@ -137,6 +138,28 @@ Result<void> Export(Session& session, const FilterArguments& arguments, const Pe
   return {};
 }
 
+Result<void> File(Session& session, const std::string& result_id, const std::string& field,
+                  const std::string& out) {
+  v1::GetResultFileRequest request;
+  request.set_result_id(result_id);
+  request.set_field(field);
+  VS_CLI_TRY(const v1::GetResultFileResponse response,
+             Ask(session, &v1::ResultService::Stub::GetResultFile, request));
+  if (out == "-") {
+    std::cout << response.data() << std::flush;
+    return {};
+  }
+  const std::filesystem::path path = out.empty()
+                                         ? std::filesystem::path(response.file_name()).filename()
+                                         : std::filesystem::path(out);
+  std::ofstream file(path, std::ios::binary);
+  file << response.data();
+  file.close();
+  if (!file) return client::Failure(client::Code::kUnknown, "cannot write " + path.string());
+  PrintLine(path.string() + ": " + std::to_string(response.data().size()) + " bytes");
+  return {};
+}
+
 }  // namespace
 
 void AddResultCommands(CommandLine& line) {
@@ -161,6 +184,15 @@ void AddResultCommands(CommandLine& line) {
                                 -1, INT64_MAX);
   tail.Example("visionctl results tail --sequence inspect --class fail");
   tail.Run([=](Session& session) { return Tail(session, tail_filter, *lines, *after); });
+
+  Command& fetch = line.Add("results file", "Fetch the picture or point cloud that a result names");
+  const auto result_id = fetch.Positional("RESULT_ID", "Which result");
+  const auto field = fetch.Positional("FIELD", "Its value with the path, such as picture");
+  const auto out = fetch.Text(
+      "--out", "FILE", "Where to; - is standard output. Without it: here, under its own name");
+  fetch.Example(
+      "visionctl results file 019b2a6c-0f3e-7c1a-8f57-1d2a3b4c5d6e picture --out part.png");
+  fetch.Run([=](Session& session) { return File(session, *result_id, *field, *out); });
 
   Command& write = line.Add("results export", "Write results as CSV");
   const FilterArguments filter = AddFilter(write);

@@ -1,7 +1,6 @@
 #include "server/services/result_service.h"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <optional>
 #include <set>
@@ -12,7 +11,9 @@
 #include "server/convert/result.h"
 #include "server/convert/time.h"
 #include "server/results/result_csv.h"
+#include "server/results/result_file.h"
 #include "server/services/loading_source.h"
+#include "server/services/page_token.h"
 
 namespace vs {
 namespace {
@@ -27,18 +28,6 @@ constexpr int64_t kMaxQueryNs = 30'000'000'000;
 constexpr size_t kRowsPerLoad = 500;
 constexpr size_t kPieceBytes = 1u << 20;
 constexpr size_t kMaxColumns = 16'384;  // as many as spreadsheets take
-
-// A page token is the number of the last result of the page before.
-Result<std::optional<uint64_t>> ParsePageToken(const std::string& token) {
-  if (token.empty()) return std::optional<uint64_t>();
-  uint64_t number = 0;
-  const char* end = token.data() + token.size();
-  const auto parsed = std::from_chars(token.data(), end, number);
-  if (parsed.ec != std::errc() || parsed.ptr != end) {
-    return InvalidArgument(Str(Quoted(token), " is not a page_token of this method"));
-  }
-  return std::optional(number);
-}
 
 Result<SqlLimits> LimitsOf(const pb::QueryResultsRequest& request) {
   SqlLimits limits;
@@ -119,20 +108,24 @@ class Exporter {
 
 }  // namespace
 
-Result<std::unique_ptr<ResultService>> ResultService::Make(ResultStore& store, const Clock& clock) {
+Result<std::unique_ptr<ResultService>> ResultService::Make(ResultStore& store,
+                                                           const std::filesystem::path& data_dir,
+                                                           const Clock& clock) {
   Readers readers;
   VS_ASSIGN_OR_RETURN(readers.single, ResultReader::Open(store.file()));
   VS_ASSIGN_OR_RETURN(readers.lists, ResultReader::Open(store.file()));
   VS_ASSIGN_OR_RETURN(readers.exports, ResultReader::Open(store.file()));
   VS_ASSIGN_OR_RETURN(readers.watches, ResultReader::Open(store.file()));
   VS_ASSIGN_OR_RETURN(readers.query, SqlQuery::Open(store.file(), clock));
-  return std::unique_ptr<ResultService>(new ResultService(store, std::move(readers)));
+  return std::unique_ptr<ResultService>(new ResultService(store, data_dir, std::move(readers)));
 }
 
 void ResultService::Register(Router& router) {
   const std::string service = "/visionserver.v1.ResultService/";
   router.Unary(service + "ListResults", this, &ResultService::ListResults, {.lane = Lane::kList});
   router.Unary(service + "GetResult", this, &ResultService::GetResult);
+  router.Unary(service + "GetResultFile", this, &ResultService::GetResultFile,
+               {.lane = Lane::kList});
   router.Unary(service + "QueryResults", this, &ResultService::QueryResults,
                {.lane = Lane::kQuery});
   router.Stream(service + "ExportResults", this, &ResultService::ExportResults);
@@ -158,6 +151,25 @@ Result<pb::Result> ResultService::GetResult(const Call& /*call*/,
                                             const pb::GetResultRequest& request) {
   VS_ASSIGN_OR_RETURN(const StoredResult result, readers_.single->Get(request.result_id()));
   return ToProto(result);
+}
+
+Result<pb::GetResultFileResponse> ResultService::GetResultFile(
+    const Call& /*call*/, const pb::GetResultFileRequest& request) {
+  VS_ASSIGN_OR_RETURN(const StoredResult result, readers_.single->Get(request.result_id()));
+  const auto field = result.record.values.find(request.field());
+  if (field == result.record.values.end()) {
+    return NotFound(Str("result ", request.result_id(), " has no value ", Quoted(request.field())));
+  }
+  const auto* path = std::get_if<std::string>(&field->second);
+  if (path == nullptr) {
+    return InvalidArgument(Str("the value ", request.field(), " is no text, so it names no file"));
+  }
+  VS_ASSIGN_OR_RETURN(ResultFile file, ReadResultFile(data_dir_, *path));
+  pb::GetResultFileResponse response;
+  response.set_file_name(std::move(file.name));
+  response.set_media_type(std::move(file.media_type));
+  response.set_data(std::move(file.data));
+  return response;
 }
 
 Result<pb::QueryResultsResponse> ResultService::QueryResults(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -18,8 +19,11 @@ namespace vs {
 // Reading what sequences found: see result.proto. Only what is on the disk is shown.
 class ResultService {
  public:
-  // Both must outlive it, and it its open streams.
-  static Result<std::unique_ptr<ResultService>> Make(ResultStore& store, const Clock& clock);
+  // Store and clock must outlive it, and it its open streams. `data_dir` is where the files lie
+  // that results name.
+  static Result<std::unique_ptr<ResultService>> Make(ResultStore& store,
+                                                     const std::filesystem::path& data_dir,
+                                                     const Clock& clock);
   void Register(Router& router);
 
  private:
@@ -32,13 +36,15 @@ class ResultService {
     std::unique_ptr<SqlQuery> query;
   };
 
-  ResultService(ResultStore& store, Readers readers)
-      : store_(store), readers_(std::move(readers)) {}
+  ResultService(ResultStore& store, std::filesystem::path data_dir, Readers readers)
+      : store_(store), data_dir_(std::move(data_dir)), readers_(std::move(readers)) {}
 
   Result<visionserver::v1::ListResultsResponse> ListResults(
       const Call& call, const visionserver::v1::ListResultsRequest& request);
   Result<visionserver::v1::Result> GetResult(const Call& call,
                                              const visionserver::v1::GetResultRequest& request);
+  Result<visionserver::v1::GetResultFileResponse> GetResultFile(
+      const Call& call, const visionserver::v1::GetResultFileRequest& request);
   Result<visionserver::v1::QueryResultsResponse> QueryResults(
       const Call& call, const visionserver::v1::QueryResultsRequest& request);
   Result<std::unique_ptr<StreamSource>> ExportResults(
@@ -47,6 +53,7 @@ class ResultService {
       const Call& call, const visionserver::v1::WatchResultsRequest& request);
 
   ResultStore& store_;
+  const std::filesystem::path data_dir_;
   const Readers readers_;
   Executor loads_{2, 1024};  // last: it goes first
 };

@@ -28,6 +28,10 @@ class LogResult final : public Block {
                                Need::kSome};
   In<std::string> part_id{this, "part_id", "The part that was measured.", Need::kOptional};
   In<std::string> meas_id{this, "meas_id", "A free name of the measurement.", Need::kOptional};
+  In<std::string> picture{this, "picture",
+                          "The file with a picture of the frame, as SaveImages gives it; stored as "
+                          "the value picture. A frame of which none was saved is no failure.",
+                          Need::kOptional};
   Out<std::string> result_id{
       this, "result_id",
       "The id of the result, which is stored a moment later. Whoever must be sure that it is kept "
@@ -46,6 +50,7 @@ class LogResult final : public Block {
       return FailedPrecondition("results need a store: run this sequence on a server");
     }
     std::set<std::string> names;
+    if (picture.connected()) names.insert("picture");
     for (const auto& [input, name] : Columns()) {
       if (!input->connected()) continue;
       if (!IsColumnType(input->source_type())) return WrongType(*input, input->source_type());
@@ -70,6 +75,7 @@ class LogResult final : public Block {
       if (!input->has_value()) continue;
       VS_ASSIGN_OR_RETURN(record.values[**name], Column(*input));
     }
+    if (picture.has_value()) record.values["picture"] = *picture;
     VS_ASSIGN_OR_RETURN(record.result_class, Verdict());
     // Also a frame whose measurement failed leaves its row.
     if (std::string missing = Missing(); !missing.empty()) {

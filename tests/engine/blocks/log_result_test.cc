@@ -74,6 +74,21 @@ TEST_F(LogResult, AlsoStoresThatAMeasurementFailed) {
   EXPECT_EQ(sink_.records[0].values, (Values{{"a", 0.25}}));
 }
 
+TEST_F(LogResult, NamesThePictureOfAFrameThatHasOne) {
+  block_.Input("a", 0.25);
+  block_.block().FindInput("picture")->Connect("string");
+  ASSERT_TRUE(block_.Start().ok());
+  ASSERT_TRUE(block_.Run().ok());
+  EXPECT_EQ(sink_.records[0].values, (Values{{"a", 0.25}}));
+  EXPECT_EQ(sink_.records[0].state, ResultRecord::State::kCompleted);
+  block_.Input("picture", std::string("images/1.png"));
+  ASSERT_TRUE(block_.Run().ok());
+  EXPECT_EQ(sink_.records[1].values,
+            (Values{{"a", 0.25}, {"picture", std::string("images/1.png")}}));
+  ASSERT_TRUE(block_.Set("name_a", std::string("picture")).ok());
+  EXPECT_EQ(block_.Start(), InvalidArgument("two values are called picture: rename one"));
+}
+
 TEST_F(LogResult, TakesTheVerdictInWordsBeforeYesAndNo) {
   block_.Input("pass", true);
   block_.Input("result_class", std::string("warn"));

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -82,6 +83,57 @@ TEST_F(ResultApi, WhatASequenceLogsIsWatchedListedQueriedAndExported) {
   EXPECT_TRUE(pieces->Finish().ok());
   EXPECT_THAT(csv, HasSubstr(",reason,sum\r\n1,"));
   EXPECT_THAT(csv, HasSubstr(result.result_id()));
+}
+
+TEST_F(ResultApi, ThePictureThatAResultNamesIsFetched) {
+  SequenceSpec spec;
+  spec.id = "pictures";
+  spec.blocks = {SourceSpec("source"),
+                 {"cameras", "SimulatedStereo", {{"rate_hz", 20.0}}},
+                 {"save",
+                  "SaveImages",
+                  {{"policy", std::string("every_nth")},
+                   {"every_nth", int64_t{1000}},
+                   {"min_free_mb", int64_t{0}}}},
+                 {"log", "LogResult", {{"name_a", std::string("count")}}}};
+  spec.connections = {{"cameras", "pair", "save", "picture"},
+                      {"save", "path", "log", "picture"},
+                      {"source", "value", "log", "a"}};
+  Create(spec);
+  ClientCall watch_call(operator_);
+  pb::WatchResultsRequest watch;
+  watch.set_after_number(0);
+  const auto results = results_->WatchResults(watch_call.context(), watch);
+  ASSERT_TRUE(Start("pictures").ok());
+  pb::Result result;
+  ASSERT_TRUE(results->Read(&result));
+  ASSERT_EQ(2, result.fields_size());
+  EXPECT_EQ("picture", result.fields(1).name());
+
+  pb::GetResultFileRequest request;
+  request.set_result_id(result.result_id());
+  request.set_field("picture");
+  pb::GetResultFileResponse file;
+  const auto fetch = [&] {
+    return results_->GetResultFile(ClientCall(operator_).context(), request, &file).error_code();
+  };
+  ASSERT_EQ(grpc::StatusCode::OK, fetch());
+  EXPECT_EQ("images/" + file.file_name(), result.fields(1).value().string_value());
+  EXPECT_EQ("image/png", file.media_type());
+  EXPECT_EQ("\x89PNG", file.data().substr(0, 4));
+
+  std::filesystem::remove(server_.data_dir() / "images" / file.file_name());
+  EXPECT_EQ(grpc::StatusCode::NOT_FOUND, fetch());
+  request.set_field("count");
+  EXPECT_EQ(grpc::StatusCode::INVALID_ARGUMENT, fetch());
+  request.set_field("other");
+  EXPECT_EQ(grpc::StatusCode::NOT_FOUND, fetch());
+  request.set_result_id("019b2a6c-0f3e-7c1a-8f57-1d2a3b4c5d6e");
+  EXPECT_EQ(grpc::StatusCode::NOT_FOUND, fetch());
+  // A frame without a picture is no failure.
+  ASSERT_TRUE(results->Read(&result));
+  EXPECT_EQ(pb::RESULT_STATE_COMPLETED, result.result_state());
+  EXPECT_EQ(1, result.fields_size());
 }
 
 TEST_F(ResultApi, AWatcherWhoKnowsResultsThatAreNotThereIsToldSo) {
