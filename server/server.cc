@@ -124,19 +124,43 @@ Status Server::OpenStores() {
   } else {
     VS_ASSIGN_OR_RETURN(one_time_password_, access_->accounts().FirstPassword());
   }
+  VS_ASSIGN_OR_RETURN(audit_, OpenAudit());
   VS_ASSIGN_OR_RETURN(vision_, Vision::Open(config_, folder_.path(), system_clock_));
   return Status();
+}
+
+Result<std::unique_ptr<AuditLog>> Server::OpenAudit() {
+  const auto is_user = [this](const std::string& name) {
+    return access_->accounts().FindUser(name).has_value();
+  };
+  const auto on_state = [this](const Status& status) {
+    if (status.ok()) {
+      alarms_.Clear("audit");
+    } else {
+      alarms_.Raise(
+          "audit", AlarmBoard::Severity::kError,
+          Str("who changes what is not written down, but waits in memory: ", status.message()));
+    }
+  };
+  return AuditLog::Open({.file = folder_.path() / "audit.db",
+                         .limits = {.keep_ns = config_.audit().keep_days() * kDayNs,
+                                    .keep_entries = config_.audit().keep_entries()},
+                         .is_user = is_user,
+                         .on_state = on_state},
+                        clock_);
 }
 
 void Server::RegisterServices() {
   session_service_ = std::make_unique<SessionService>(*access_);
   user_service_ = std::make_unique<UserService>(*access_);
+  audit_service_ = std::make_unique<AuditService>(audit_->store());
   system_service_ = std::make_unique<SystemService>(
       SystemServiceOptions{.name = config_.name(), .version = kVersion, .data_dir = folder_.path()},
       clock_, *access_, alarms_);
   health_service_ = std::make_unique<HealthService>(health_);
   session_service_->Register(router_);
   user_service_->Register(router_);
+  audit_service_->Register(router_);
   system_service_->Register(router_);
   health_service_->Register(router_);
   vision_->Register(router_);
@@ -160,8 +184,8 @@ Status Server::StartNetwork() {
     fingerprint_ = info.fingerprint;
     certificate_ = options.certificate;
   }
-  dispatcher_ =
-      std::make_unique<Dispatcher>(router_, *access_, ToDispatcherOptions(config_.limits()));
+  dispatcher_ = std::make_unique<Dispatcher>(router_, *access_,
+                                             ToDispatcherOptions(config_.limits()), audit_.get());
   VS_ASSIGN_OR_RETURN(grpc_, GrpcServer::Start(options, *dispatcher_));
   if (!config_.web_address().empty()) VS_RETURN_IF_ERROR(StartPage());
   system_service_->Attach(*dispatcher_, [this] { return Connections(); });

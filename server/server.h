@@ -13,12 +13,14 @@
 #include "engine/base/status.h"
 #include "server/access/access_control.h"
 #include "server/access/password.h"
+#include "server/audit/audit_log.h"
 #include "server/config/config.h"
 #include "server/data_folder.h"
 #include "server/http/http_server.h"
 #include "server/rpc/dispatcher.h"
 #include "server/rpc/router.h"
 #include "server/services/alarm_board.h"
+#include "server/services/audit_service.h"
 #include "server/services/health_board.h"
 #include "server/services/health_service.h"
 #include "server/services/reflection_service.h"
@@ -73,6 +75,7 @@ class Server {
 
   AccessControl& access() { return *access_; }
   HealthBoard& health() { return health_; }
+  AuditLog& audit() { return *audit_; }
   AlarmBoard& alarms() { return alarms_; }
   const Dispatcher& dispatcher() const { return *dispatcher_; }
   GrpcServer& grpc() { return *grpc_; }
@@ -83,6 +86,7 @@ class Server {
  private:
   Server(const ServerOptions& options, DataFolder folder);
   Status OpenStores();
+  Result<std::unique_ptr<AuditLog>> OpenAudit();
   void RegisterServices();
   Status StartNetwork();
   Status StartPage();
@@ -102,12 +106,14 @@ class Server {
   HealthBoard health_;
   AlarmBoard alarms_;
   std::unique_ptr<AccessControl> access_;
+  std::unique_ptr<AuditLog> audit_;
   std::unique_ptr<Vision> vision_;
   std::unique_ptr<VisionWatch> vision_watch_;
 
   // What answers calls. They go before the parts above.
   std::unique_ptr<SessionService> session_service_;
   std::unique_ptr<UserService> user_service_;
+  std::unique_ptr<AuditService> audit_service_;
   std::unique_ptr<SystemService> system_service_;
   std::unique_ptr<HealthService> health_service_;
   std::unique_ptr<ReflectionService> reflection_service_;

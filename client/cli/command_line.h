@@ -103,6 +103,7 @@ void AddDepthCommand(CommandLine& line);
 void AddResultCommands(CommandLine& line);
 void AddUserCommands(CommandLine& line);
 void AddKeyCommands(CommandLine& line);
+void AddAuditCommand(CommandLine& line);
 void AddStatusCommand(CommandLine& line);
 
 }  // namespace vs::cli

@@ -20,6 +20,7 @@ int main(int argument_count, char** arguments) {
     AddResultCommands(line);
     AddUserCommands(line);
     AddKeyCommands(line);
+    AddAuditCommand(line);
     AddStatusCommand(line);
     return line.Main(argument_count, arguments);
   } catch (const std::exception& error) {

@@ -32,6 +32,7 @@ class AccessControl final : public Gatekeeper {
                                                      const Clock& clock);
 
   Result<Caller> Admit(const std::string& method, std::string_view credential) override;
+  Caller Identify(std::string_view credential) override;
   Status Recheck(const std::string& method, const Caller& caller, bool in_use) override;
 
   // Turns away an address that has guessed too often, without hashing anything.
@@ -67,8 +68,6 @@ class AccessControl final : public Gatekeeper {
                 const Clock& clock)
       : database_(std::move(database)), hasher_(options.password_cost), throttle_(clock) {}
 
-  // Nobody when the credential is not, or no longer, valid.
-  Caller Identify(std::string_view credential);
   Caller OfSession(const std::optional<SessionRecord>& session) const;
 
   const std::unique_ptr<AccessDatabase> database_;

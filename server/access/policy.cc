@@ -26,43 +26,52 @@ constexpr AccessRule AtOnce(std::string_view method, RoleSet roles) {
   return {.method = method, .roles = roles, .before_password_change = true};
 }
 
+constexpr AccessRule Changes(AccessRule rule) {
+  rule.changes = true;
+  return rule;
+}
+
+constexpr AccessRule Changes(std::string_view method, RoleSet roles) {
+  return Changes({.method = method, .roles = roles});
+}
+
 // clang-format off
 constexpr auto kRules = std::to_array<AccessRule>({
-    Anybody("/visionserver.v1.SessionService/Login"),
-    AtOnce("/visionserver.v1.SessionService/Logout", kViewer),
+    Changes(Anybody("/visionserver.v1.SessionService/Login")),
+    Changes(AtOnce("/visionserver.v1.SessionService/Logout", kViewer)),
     AtOnce("/visionserver.v1.SessionService/WhoAmI", kEverybody),
-    AtOnce("/visionserver.v1.SessionService/ChangePassword", kViewer),
+    Changes(AtOnce("/visionserver.v1.SessionService/ChangePassword", kViewer)),
     {"/visionserver.v1.SessionService/ListMySessions", kViewer},
-    {"/visionserver.v1.SessionService/RevokeSession", kViewer},
+    Changes("/visionserver.v1.SessionService/RevokeSession", kViewer),
 
     {"/visionserver.v1.UserService/ListUsers", kAdmin},
-    {"/visionserver.v1.UserService/CreateUser", kAdmin},
-    {"/visionserver.v1.UserService/UpdateUser", kAdmin},
-    {"/visionserver.v1.UserService/DeleteUser", kAdmin},
-    {"/visionserver.v1.UserService/ResetPassword", kAdmin},
-    {"/visionserver.v1.UserService/UnlockUser", kAdmin},
+    Changes("/visionserver.v1.UserService/CreateUser", kAdmin),
+    Changes("/visionserver.v1.UserService/UpdateUser", kAdmin),
+    Changes("/visionserver.v1.UserService/DeleteUser", kAdmin),
+    Changes("/visionserver.v1.UserService/ResetPassword", kAdmin),
+    Changes("/visionserver.v1.UserService/UnlockUser", kAdmin),
     {"/visionserver.v1.UserService/ListSessions", kAdmin},
-    {"/visionserver.v1.UserService/CreateApiKey", kAdmin},
+    Changes("/visionserver.v1.UserService/CreateApiKey", kAdmin),
     {"/visionserver.v1.UserService/ListApiKeys", kAdmin},
-    {"/visionserver.v1.UserService/RevokeApiKey", kAdmin},
+    Changes("/visionserver.v1.UserService/RevokeApiKey", kAdmin),
 
     {"/visionserver.v1.SequenceService/ListSequences", kEverybody},
     {"/visionserver.v1.SequenceService/GetSequence", kEverybody},
-    {"/visionserver.v1.SequenceService/CreateSequence", kEngineer},
-    {"/visionserver.v1.SequenceService/UpdateSequence", kEngineer},
-    {"/visionserver.v1.SequenceService/DeleteSequence", kEngineer},
+    Changes("/visionserver.v1.SequenceService/CreateSequence", kEngineer),
+    Changes("/visionserver.v1.SequenceService/UpdateSequence", kEngineer),
+    Changes("/visionserver.v1.SequenceService/DeleteSequence", kEngineer),
     {"/visionserver.v1.SequenceService/ValidateSequence", kViewer},
     {"/visionserver.v1.SequenceService/ListBlockTypes", kViewer},
-    {"/visionserver.v1.SequenceService/StartSequence", kOperator | kRobot},
-    {"/visionserver.v1.SequenceService/StopSequence", kOperator | kRobot},
+    Changes("/visionserver.v1.SequenceService/StartSequence", kOperator | kRobot),
+    Changes("/visionserver.v1.SequenceService/StopSequence", kOperator | kRobot),
     {"/visionserver.v1.SequenceService/GetSequenceState", kEverybody},
     {"/visionserver.v1.SequenceService/WatchSequence", kEverybody},
 
     {"/visionserver.v1.ParameterService/ListParameters", kEverybody},
     {"/visionserver.v1.ParameterService/GetParameters", kEverybody},
     // Operators and robots only those meant for them: see MaySetEveryParameter.
-    {"/visionserver.v1.ParameterService/SetParameters", kOperator | kRobot},
-    {"/visionserver.v1.ParameterService/ResetParameters", kOperator | kRobot},
+    Changes("/visionserver.v1.ParameterService/SetParameters", kOperator | kRobot),
+    Changes("/visionserver.v1.ParameterService/ResetParameters", kOperator | kRobot),
     {"/visionserver.v1.ParameterService/WatchParameters", kEverybody},
 
     {"/visionserver.v1.StreamService/ListStreams", kEverybody},
@@ -76,7 +85,7 @@ constexpr auto kRules = std::to_array<AccessRule>({
     {"/visionserver.v1.CameraService/GetCamera", kEverybody},
     {"/visionserver.v1.CameraService/ListFeatures", kViewer},
     {"/visionserver.v1.CameraService/GetFeatures", kViewer},
-    {"/visionserver.v1.CameraService/SetFeatures", kEngineer},
+    Changes("/visionserver.v1.CameraService/SetFeatures", kEngineer),
     {"/visionserver.v1.CameraService/TriggerCamera", kOperator | kRobot},
     {"/visionserver.v1.CameraService/WatchCameras", kEverybody},
 

@@ -25,6 +25,7 @@ struct AccessRule {
   RoleSet roles;
   bool without_login = false;           // anybody, no token needed
   bool before_password_change = false;  // also with a one-time password
+  bool changes = false;  // something that outlives the call, so that it is recorded: server/audit
 };
 
 // The whole table: every method of every service, each once.

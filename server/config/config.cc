@@ -32,7 +32,7 @@ struct Range {
   int32_t max;
 };
 // The ranges that server_config.proto tells its reader.
-constexpr std::array<Range, 20> kRanges = {{{"Limits.connections", 1, 10'000},
+constexpr std::array<Range, 22> kRanges = {{{"Limits.connections", 1, 10'000},
                                             {"Limits.connections_per_address", 1, 10'000},
                                             {"Limits.streams_per_connection", 1, 1'000},
                                             {"Limits.open_streams", 1, 100'000},
@@ -51,6 +51,8 @@ constexpr std::array<Range, 20> kRanges = {{{"Limits.connections", 1, 10'000},
                                             {"Sessions.lifetime_minutes", 1, 43'200},
                                             {"Sessions.per_user", 1, 1'000},
                                             {"Sessions.total", 1, 10'000},
+                                            {"Audit.keep_days", 1, 3'650},
+                                            {"Audit.keep_entries", 1'000, 10'000'000},
                                             {"Processing.workers", 0, 256}}};
 
 // Gathers all faults of one file, with their lines.

@@ -14,6 +14,8 @@ struct Call {
   std::string method;   // "/visionserver.v1.SessionService/Login"
   Caller caller;        // nobody on the few methods that need no login
   std::string address;  // of the client, without the port
+  // What the call is about, of a call that is recorded: see SubjectOf.
+  std::string subject{};
   // When the request was there, by the host's monotonic clock: a limit of time counts from then.
   int64_t arrived_ns = 0;
   // Stops when the client has gone or the deadline has passed: nobody waits for the answer.

@@ -19,9 +19,10 @@ Status ShuttingDown() { return Unavailable("the server is shutting down"); }
 }  // namespace
 
 Dispatcher::Dispatcher(const Router& router, Gatekeeper& gatekeeper,
-                       const DispatcherOptions& options)
+                       const DispatcherOptions& options, Auditor* auditor)
     : router_(router),
       gatekeeper_(gatekeeper),
+      auditor_(auditor),
       options_(options),
       quick_(options.quick_threads, options.quick_queue),
       slow_(options.slow_threads, options.slow_queue),
@@ -46,8 +47,13 @@ std::shared_ptr<ServerCall> Dispatcher::Begin(const std::string& method,
   const Method* found = router_.Find(method);
   const Result<Caller> caller = gatekeeper_.Admit(method, credential);
   Call call{.method = method, .address = std::move(address)};
-  if (caller) call.caller = *caller;
-  auto server_call = std::make_shared<ServerCall>(*this, found, std::move(call), channel);
+  const bool recorded = found != nullptr && Records(method);
+  if (caller) {
+    call.caller = *caller;
+  } else if (recorded) {
+    call.caller = gatekeeper_.Identify(credential);
+  }
+  auto server_call = std::make_shared<ServerCall>(*this, found, std::move(call), recorded, channel);
   Add(server_call);
   if (!caller) {
     server_call->Refuse(caller.error());
@@ -141,6 +147,7 @@ void Dispatcher::Finished(const ServerCall& call, const Status& status, bool str
     MutexLock lock(mutex_);
     streams_.erase(&call);
   }
+  if (call.recorded()) auditor_->Record(call.call(), status);
   const auto found = counters_.find(call.call().method);
   if (found == counters_.end()) return;
   Counters& counters = found->second;

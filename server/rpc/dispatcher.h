@@ -10,6 +10,7 @@
 
 #include "engine/base/clock.h"
 #include "engine/base/mutex.h"
+#include "server/rpc/auditor.h"
 #include "server/rpc/executor.h"
 #include "server/rpc/gatekeeper.h"
 #include "server/rpc/router.h"
@@ -49,8 +50,9 @@ struct MethodStats {
 // Takes calls from whatever network, lets them pass the gate, and runs them. Thread-safe.
 class Dispatcher {
  public:
-  // Both must outlive it; the router is complete.
-  Dispatcher(const Router& router, Gatekeeper& gatekeeper, const DispatcherOptions& options = {});
+  // All must outlive it; the router is complete. Without an auditor nothing is recorded.
+  Dispatcher(const Router& router, Gatekeeper& gatekeeper, const DispatcherOptions& options = {},
+             Auditor* auditor = nullptr);
   ~Dispatcher();
   Dispatcher(const Dispatcher&) = delete;
   Dispatcher& operator=(const Dispatcher&) = delete;
@@ -80,6 +82,9 @@ class Dispatcher {
   };
 
   Executor& executor(Lane lane);
+  bool Records(const std::string& method) const {
+    return auditor_ != nullptr && auditor_->Records(method);
+  }
   void Add(const std::shared_ptr<ServerCall>& call) VS_EXCLUDES(mutex_);
   void Remove(const ServerCall* call) VS_EXCLUDES(mutex_);
   // RESOURCE_EXHAUSTED.
@@ -92,6 +97,7 @@ class Dispatcher {
 
   const Router& router_;
   Gatekeeper& gatekeeper_;
+  Auditor* const auditor_;
   const SystemClock clock_;
   const DispatcherOptions options_;
   std::map<std::string, Counters> counters_;  // by method; the keys never change

@@ -13,14 +13,14 @@ constexpr size_t kMaxMessageBytes = 1024;
 // Of the details before base64 makes them a third longer.
 constexpr size_t kMaxDetailsBytes = 4096;
 
+}  // namespace
+
 std::string CutTo(const std::string& text, size_t max_bytes) {
   if (text.size() <= max_bytes) return text;
   size_t end = max_bytes - 3;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;  // UTF-8
   return text.substr(0, end) + "...";
 }
-
-}  // namespace
 
 WireError ToWireError(const Status& status) {
   WireError error;

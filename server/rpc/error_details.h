@@ -15,4 +15,7 @@ struct WireError {
 };
 WireError ToWireError(const Status& status);
 
+// UTF-8 text of at most so many bytes (3 or more), with "..." at its end when it was longer.
+std::string CutTo(const std::string& text, size_t max_bytes);
+
 }  // namespace vs

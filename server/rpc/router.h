@@ -5,12 +5,14 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "engine/base/status.h"
 #include "server/rpc/call.h"
+#include "server/rpc/request_subject.h"
 #include "server/rpc/stream_source.h"
 #include "server/rpc/wire_message.h"
 
@@ -42,6 +44,8 @@ struct Method {
   // One of the two. `answer` also serves each request of a client stream in turn.
   std::function<Result<WireMessage>(const Call&, std::string_view request)> answer;
   std::function<Result<std::unique_ptr<StreamSource>>(const Call&, std::string_view request)> open;
+  // Of a unary method: see SubjectOf.
+  std::function<std::optional<std::string>(std::string_view request)> subject;
 };
 
 // All methods of the API and what they do. Services add theirs while the server is put together;
@@ -65,6 +69,10 @@ class Router {
       Result<Response> response = (service->*handler)(call, request);
       if (!response) return response.error();
       return Serialize(*response);
+    };
+    method.subject = [](std::string_view bytes) -> std::optional<std::string> {
+      Request request;
+      return Parse(bytes, request).ok() ? SubjectOf(request) : "";
     };
     Add(std::move(method), *Request::descriptor(), Response::descriptor());
   }

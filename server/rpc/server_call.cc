@@ -43,10 +43,12 @@ struct ServerCall::Waker {
   std::atomic<bool> pending{false};
 };
 
-ServerCall::ServerCall(Dispatcher& dispatcher, const Method* method, Call call, Channel& channel)
+ServerCall::ServerCall(Dispatcher& dispatcher, const Method* method, Call call, bool recorded,
+                       Channel& channel)
     : dispatcher_(dispatcher),
       method_(method),
       call_(std::move(call)),
+      recorded_(recorded),
       waker_(std::make_shared<Waker>(dispatcher)),
       channel_(&channel) {
   call_.cancelled = cancelled_.get_token();
@@ -86,6 +88,11 @@ void ServerCall::OnRequest(std::optional<std::string> bytes) {
     FinishWith(ResourceExhausted(Str("the request has ", bytes->size(),
                                      " bytes, this method takes ", "at most ", limit_bytes)));
     return;
+  }
+  if (recorded_ && method_->subject) {
+    std::optional<std::string> subject = method_->subject(*bytes);
+    recorded_ = subject.has_value();
+    if (subject) call_.subject = *std::move(subject);
   }
   if (method_->options.admit) {
     if (const Status admitted = method_->options.admit(call_); !admitted.ok()) {

@@ -40,7 +40,9 @@ class Channel {
 // The network calls the On... functions; they may come from any thread and never wait.
 class ServerCall : public std::enable_shared_from_this<ServerCall> {
  public:
-  ServerCall(Dispatcher& dispatcher, const Method* method, Call call, Channel& channel);
+  // `recorded`: the dispatcher's auditor is told of it. `method` is null when there is no such one.
+  ServerCall(Dispatcher& dispatcher, const Method* method, Call call, bool recorded,
+             Channel& channel);
   ~ServerCall();
   ServerCall(const ServerCall&) = delete;
   ServerCall& operator=(const ServerCall&) = delete;
@@ -64,6 +66,7 @@ class ServerCall : public std::enable_shared_from_this<ServerCall> {
   // Ends an open stream as soon as its current message is out; tells a handler to stop.
   void End(const Status& status);
   const Call& call() const { return call_; }
+  bool recorded() const { return recorded_; }
 
  private:
   // kDone: the answer or the status is on its way or there.
@@ -90,6 +93,7 @@ class ServerCall : public std::enable_shared_from_this<ServerCall> {
   Dispatcher& dispatcher_;
   const Method* const method_;  // null when there is no such method
   Call call_;
+  bool recorded_;
   std::stop_source cancelled_;
   const std::shared_ptr<Waker> waker_;
 

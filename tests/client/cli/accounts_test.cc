@@ -7,6 +7,7 @@
 
 #include "tests/client/cli/visionctl.h"
 #include "tests/support/test_server.h"
+#include "tests/support/wait_until.h"
 
 namespace vs::test {
 namespace {
@@ -161,6 +162,22 @@ TEST_F(AccountsTest, LockedUsersAreUnlocked) {
   EXPECT_THAT(visionctl_({"users", "unlock", "ana"}).output, HasSubstr("ana may log in again"));
   LogIn(ana, "ana");
   EXPECT_EQ(5, visionctl_({"users", "unlock", "nobody"}).exit_code);
+}
+
+TEST_F(AccountsTest, AdministratorsSeeWhoChangedWhat) {
+  LogInAsAdmin();
+  EXPECT_EQ(0, visionctl_({"users", "create", "ana"}).exit_code);
+  FinishedProcess shown;
+  // An entry is written a moment after its call.
+  EXPECT_TRUE(WaitUntil([&] {
+    shown = visionctl_({"audit", "--user", "admin", "--method", "CreateUser", "--limit", "5"});
+    return shown.output.find("ana") != std::string::npos;
+  }));
+  EXPECT_THAT(shown.output, ContainsRegex("admin +127.0.0.1 +UserService/CreateUser +ana +ok"));
+  server_.AddUser("ben", Role::kEngineer);
+  const Visionctl ben(Options());
+  LogIn(ben, "ben");
+  EXPECT_EQ(4, ben({"audit"}).exit_code);
 }
 
 TEST_F(AccountsTest, KeysLetMachinesInUntilTheyAreRevoked) {

@@ -64,6 +64,7 @@ constexpr const char* kCommands[] = {"",
                                      "keys list",
                                      "keys create",
                                      "keys revoke",
+                                     "audit",
                                      "status"};
 
 // Whether it is what a script and a person expect: the code, and one line that begins with the

@@ -9,39 +9,39 @@ namespace vs {
 namespace {
 
 // The table as its readers should see it, so that no right changes unnoticed. V viewer, O operator,
-// E engineer, A admin, R robot; * without login; + also with a one-time password.
+// E engineer, A admin, R robot; * without login; + also with a one-time password; ! is recorded.
 constexpr const char* kTable =
-    "SessionService/Login VOEAR*+\n"
-    "SessionService/Logout VOEA+\n"
+    "SessionService/Login VOEAR*+!\n"
+    "SessionService/Logout VOEA+!\n"
     "SessionService/WhoAmI VOEAR+\n"
-    "SessionService/ChangePassword VOEA+\n"
+    "SessionService/ChangePassword VOEA+!\n"
     "SessionService/ListMySessions VOEA\n"
-    "SessionService/RevokeSession VOEA\n"
+    "SessionService/RevokeSession VOEA!\n"
     "UserService/ListUsers A\n"
-    "UserService/CreateUser A\n"
-    "UserService/UpdateUser A\n"
-    "UserService/DeleteUser A\n"
-    "UserService/ResetPassword A\n"
-    "UserService/UnlockUser A\n"
+    "UserService/CreateUser A!\n"
+    "UserService/UpdateUser A!\n"
+    "UserService/DeleteUser A!\n"
+    "UserService/ResetPassword A!\n"
+    "UserService/UnlockUser A!\n"
     "UserService/ListSessions A\n"
-    "UserService/CreateApiKey A\n"
+    "UserService/CreateApiKey A!\n"
     "UserService/ListApiKeys A\n"
-    "UserService/RevokeApiKey A\n"
+    "UserService/RevokeApiKey A!\n"
     "SequenceService/ListSequences VOEAR\n"
     "SequenceService/GetSequence VOEAR\n"
-    "SequenceService/CreateSequence EA\n"
-    "SequenceService/UpdateSequence EA\n"
-    "SequenceService/DeleteSequence EA\n"
+    "SequenceService/CreateSequence EA!\n"
+    "SequenceService/UpdateSequence EA!\n"
+    "SequenceService/DeleteSequence EA!\n"
     "SequenceService/ValidateSequence VOEA\n"
     "SequenceService/ListBlockTypes VOEA\n"
-    "SequenceService/StartSequence OEAR\n"
-    "SequenceService/StopSequence OEAR\n"
+    "SequenceService/StartSequence OEAR!\n"
+    "SequenceService/StopSequence OEAR!\n"
     "SequenceService/GetSequenceState VOEAR\n"
     "SequenceService/WatchSequence VOEAR\n"
     "ParameterService/ListParameters VOEAR\n"
     "ParameterService/GetParameters VOEAR\n"
-    "ParameterService/SetParameters OEAR\n"
-    "ParameterService/ResetParameters OEAR\n"
+    "ParameterService/SetParameters OEAR!\n"
+    "ParameterService/ResetParameters OEAR!\n"
     "ParameterService/WatchParameters VOEAR\n"
     "StreamService/ListStreams VOEAR\n"
     "StreamService/Subscribe VOEAR\n"
@@ -53,7 +53,7 @@ constexpr const char* kTable =
     "CameraService/GetCamera VOEAR\n"
     "CameraService/ListFeatures VOEA\n"
     "CameraService/GetFeatures VOEA\n"
-    "CameraService/SetFeatures EA\n"
+    "CameraService/SetFeatures EA!\n"
     "CameraService/TriggerCamera OEAR\n"
     "CameraService/WatchCameras VOEAR\n"
     "ResultService/ListResults VOEAR\n"
@@ -82,6 +82,7 @@ std::string ToText(const AccessRule& rule) {
   if (rule.roles.Contains(Role::kRobot)) text += 'R';
   if (rule.without_login) text += '*';
   if (rule.before_password_change) text += '+';
+  if (rule.changes) text += '!';
   return text + '\n';
 }
 
