@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kPeriod{500};
 constexpr int64_t kClearAfterNs = 5'000'000'000;
+constexpr int64_t kOverBudgetNs = 1'000'000'000;
 
 using Severity = AlarmBoard::Severity;
 
@@ -56,12 +57,34 @@ void VisionWatch::LookAtSequences() {
     health_.Set(name, status.activity == Activity::kRunning);
     known_.insert(name);
     gone.erase(name);
+    LookAtLatency(status);
     if (status.error.empty()) continue;
     const std::string block = status.error_block.empty() ? "" : status.error_block + ": ";
     Report(name, status.activity == Activity::kFault ? Severity::kError : Severity::kWarning,
            Str("sequence ", status.id, ": ", block, status.error));
   }
   for (const std::string& name : gone) health_.Remove(name);
+}
+
+void VisionWatch::LookAtLatency(const SequenceStatus& status) {
+  const RunStats& stats = status.stats;
+  if (!status.active() || stats.latency_budget_ms == 0) {
+    latencies_.erase(status.id);
+    return;
+  }
+  Latency& last = latencies_[status.id];
+  const bool again = stats.frames < last.frames;  // started anew between two looks
+  const bool over = stats.over_budget > (again ? 0 : last.over_budget);
+  const int64_t now_ns = clock_.MonotonicNs();
+  if (over && last.over_since_ns == 0) last.over_since_ns = now_ns;
+  if (!over && stats.frames != last.frames) last.over_since_ns = 0;
+  last.frames = stats.frames;
+  last.over_budget = stats.over_budget;
+  if (last.over_since_ns == 0 || now_ns - last.over_since_ns < kOverBudgetNs) return;
+  Report("latency/" + status.id, Severity::kWarning,
+         Str("sequence ", status.id, " takes longer than its budget of ", stats.latency_budget_ms,
+             " ms: half of the frames need ", stats.latency_p50_ns / 1'000'000, " ms and more; ",
+             "lower the rate, give it less to do, or raise latency_budget_ms"));
 }
 
 void VisionWatch::LookAtCameras() {

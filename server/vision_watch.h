@@ -16,7 +16,8 @@ namespace vs {
 
 // Looks after the vision half of a server twice a second: tells the health of each sequence
 // ("sequences/ID"), and raises an alarm when results cannot be written ("results"), a sequence
-// fails ("sequences/ID") or a camera in use gives no pictures ("cameras/ID"). An alarm stays for
+// fails ("sequences/ID") or is over its latency budget for more than a second ("latency/ID"), or a
+// camera in use gives no pictures ("cameras/ID"). An alarm stays for
 // some seconds after its reason has gone, so that what comes and goes is seen and fills no log.
 class VisionWatch {
  public:
@@ -30,6 +31,7 @@ class VisionWatch {
   void Run() VS_EXCLUDES(mutex_);
   void Look();
   void LookAtSequences();
+  void LookAtLatency(const SequenceStatus& status);
   void LookAtCameras();
   void Report(const std::string& id, AlarmBoard::Severity severity, const std::string& message);
   void ClearOld();
@@ -41,6 +43,14 @@ class VisionWatch {
   // Of the watching thread.
   std::map<std::string, int64_t> reported_ns_;  // when each raised alarm was last true
   std::set<std::string> known_;                 // names on the health board
+  // Of a sequence with a latency budget: what was seen at the last look, and since when each look
+  // has seen frames that were over it (0: the last one saw none).
+  struct Latency {
+    uint64_t frames = 0;
+    uint64_t over_budget = 0;
+    int64_t over_since_ns = 0;
+  };
+  std::map<std::string, Latency> latencies_;
 
   Mutex mutex_;
   CondVar changed_;

@@ -105,6 +105,10 @@ void PrintState(const v1::SequenceState& state) {
               std::to_string(state.failed()) + " failed; latency p50 " +
               NumberText(state.latency_p50_us() / 1000, 1) + " ms, p99 " +
               NumberText(state.latency_p99_us() / 1000, 1) + " ms");
+    if (state.latency_budget_ms() != 0) {
+      PrintLine(std::to_string(state.over_budget()) + " frames took longer than the budget of " +
+                NumberText(state.latency_budget_ms(), 1) + " ms");
+    }
     Table table({"BLOCK", ">RUNS", ">FAILED", ">P50 MS", ">P99 MS", ">SKIPPED", "LAST ERROR"});
     for (const v1::BlockState& block : state.blocks()) {
       table.Add({block.block(), std::to_string(block.runs()), std::to_string(block.failures()),

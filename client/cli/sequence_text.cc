@@ -114,13 +114,15 @@ void ReadBlock(const json& value, const std::string& place, v1::BlockSpec* block
 NamedSpec ReadSequence(const json& root) {
   const std::string place = "the sequence";
   Object(root, place,
-         {"id", "description", "priority", "max_frames_in_flight", "blocks", "connections"});
+         {"id", "description", "priority", "max_frames_in_flight", "latency_budget_ms", "blocks",
+          "connections"});
   NamedSpec read;
   read.id = Text(root, "id", place, false);
   read.spec.set_description(Text(root, "description", place, false));
   read.spec.set_priority(Integer(root, "priority", place));
   read.spec.set_max_frames_in_flight(
       static_cast<uint32_t>(std::max(0, Integer(root, "max_frames_in_flight", place))));
+  read.spec.set_latency_budget_ms(Number(root, "latency_budget_ms", place));
   const json& blocks = List(root, "blocks", place);
   for (size_t i = 0; i < blocks.size(); ++i) {
     ReadBlock(blocks[i], "blocks[" + std::to_string(i) + "]", read.spec.add_blocks());
@@ -152,6 +154,7 @@ std::string SequenceToJson(const std::string& id, const v1::SequenceSpec& spec) 
                {"max_frames_in_flight", spec.max_frames_in_flight()},
                {"blocks", json::array()},
                {"connections", json::array()}};
+  if (spec.latency_budget_ms() != 0) root["latency_budget_ms"] = spec.latency_budget_ms();
   for (const v1::BlockSpec& block : blocks) {
     json params = json::object();
     for (const auto& [name, value] : block.parameters()) params[name] = ToJson(value);

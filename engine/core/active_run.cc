@@ -261,7 +261,10 @@ void ActiveRun::Advance(int node, FrameState* state) {
 void ActiveRun::EndFrame(const FrameState& state) {
   const FrameContext& frame = state.frame->context;
   const int64_t now_ns = clock_.MonotonicNs();
-  latencies_.Add(now_ns - (frame.capture_ns != 0 ? frame.capture_ns : frame.popped_ns));
+  const int64_t latency_ns = now_ns - (frame.capture_ns != 0 ? frame.capture_ns : frame.popped_ns);
+  const double budget_ms = sequence_->spec().latency_budget_ms;
+  if (budget_ms != 0 && static_cast<double>(latency_ns) > budget_ms * 1e6) ++frames_over_budget_;
+  latencies_.Add(latency_ns);
   completions_.Add(now_ns);
   --in_flight_;
   ++frames_done_;
@@ -306,6 +309,7 @@ RunStats ActiveRun::Stats() const {
     stats.frames = frames_done_;
     stats.failed_frames = frames_failed_;
     stats.frames_in_flight = in_flight_;
+    stats.over_budget = frames_over_budget_;
     for (size_t i = 0; i < counters_.size(); ++i) {
       stats.blocks[i].last_error = counters_[i].last_error;
     }
@@ -326,6 +330,7 @@ RunStats ActiveRun::Stats() const {
   stats.frames_per_second = RatePerSecond(completions_.All(), clock_.MonotonicNs());
   stats.latency_p50_ns = Percentile(latencies_.All(), 50);
   stats.latency_p99_ns = Percentile(latencies_.All(), 99);
+  stats.latency_budget_ms = sequence_->spec().latency_budget_ms;
   stats.parameter_revision = parameters_.Revision();
   return stats;
 }

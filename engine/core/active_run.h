@@ -121,6 +121,7 @@ class ActiveRun final : public Run, public std::enable_shared_from_this<ActiveRu
   std::vector<uint64_t> done_ VS_GUARDED_BY(queue_.mutex);  // for each node: its last frame
   uint64_t frames_done_ VS_GUARDED_BY(queue_.mutex) = 0;
   uint64_t frames_failed_ VS_GUARDED_BY(queue_.mutex) = 0;
+  uint64_t frames_over_budget_ VS_GUARDED_BY(queue_.mutex) = 0;
   std::string last_error_ VS_GUARDED_BY(queue_.mutex);
 };
 

@@ -15,6 +15,7 @@
 namespace vs {
 namespace {
 
+constexpr double kMaxBudgetMs = 60'000;
 constexpr size_t kMaxDescriptionBytes = 4096;
 constexpr size_t kMaxNames = 20;
 
@@ -77,6 +78,10 @@ class Checker {
     if (spec_.max_frames_in_flight < 1 || spec_.max_frames_in_flight > 16) {
       Add("sequence",
           Str("max_frames_in_flight must be 1 to 16, not ", spec_.max_frames_in_flight));
+    }
+    if (!(spec_.latency_budget_ms >= 0 && spec_.latency_budget_ms <= kMaxBudgetMs)) {
+      Add("sequence",
+          Str("latency_budget_ms must be 0 to ", kMaxBudgetMs, ", not ", spec_.latency_budget_ms));
     }
     if (spec_.blocks.empty()) Add("sequence", "has no source: add a camera or a file source");
     if (spec_.blocks.size() > kMaxBlocks) {

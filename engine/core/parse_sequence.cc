@@ -228,6 +228,8 @@ SequenceSpec ReadSpec(const json& root, Reader* reader) {
        {"priority", false, [&](auto& v, auto& p) { reader->Integer(v, p, &spec.priority); }},
        {"max_frames_in_flight", false,
         [&](auto& v, auto& p) { reader->Integer(v, p, &spec.max_frames_in_flight); }},
+       {"latency_budget_ms", false,
+        [&](auto& v, auto& p) { reader->Number(v, p, &spec.latency_budget_ms); }},
        {"blocks", false, [&](auto& v, auto& p) { reader->Array(v, p, block); }},
        {"connections", false, [&](auto& v, auto& p) { reader->Array(v, p, connection); }}});
   return spec;

@@ -42,6 +42,8 @@ struct RunStats {
   double frames_per_second = 0;  // completed, over the last two seconds
   int64_t latency_p50_ns = 0;    // capture (or entry) to the end of the last block,
   int64_t latency_p99_ns = 0;    // over the last 256 frames
+  double latency_budget_ms = 0;  // SequenceSpec's
+  uint64_t over_budget = 0;      // frames that took longer
   uint64_t parameter_revision = 0;
   std::vector<BlockStats> blocks;  // in topological order
 };

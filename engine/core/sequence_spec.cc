@@ -38,6 +38,7 @@ std::string ToJson(const SequenceSpec& spec) {
                {"max_frames_in_flight", spec.max_frames_in_flight},
                {"blocks", json::array()},
                {"connections", json::array()}};
+  if (spec.latency_budget_ms != 0) root["latency_budget_ms"] = spec.latency_budget_ms;
   for (const BlockSpec* block : blocks) {
     json params = json::object();
     for (const auto& [name, value] : block->params) {

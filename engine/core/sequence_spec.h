@@ -38,6 +38,8 @@ struct SequenceSpec {
   int priority = 0;              // -10 .. 10; higher runs first when workers are short
   int max_frames_in_flight = 2;  // 1 .. 16; more = higher rate on several cores, never more delay
                                  // than that many frames
+  double latency_budget_ms = 0;  // 0 .. 60000; from capture to the end of the last block; slower
+                                 // frames are counted. 0 = no limit
   std::vector<BlockSpec> blocks;
   std::vector<Connection> connections;
 

@@ -80,6 +80,7 @@ pb::SequenceSpec ToProto(const SequenceSpec& spec) {
   result.set_description(spec.description);
   result.set_priority(spec.priority);
   result.set_max_frames_in_flight(static_cast<uint32_t>(spec.max_frames_in_flight));
+  result.set_latency_budget_ms(spec.latency_budget_ms);
   for (const BlockSpec& block : spec.blocks) {
     pb::BlockSpec* added = result.add_blocks();
     added->set_id(block.id);
@@ -106,6 +107,7 @@ Result<SequenceSpec> FromProto(const std::string& id, const pb::SequenceSpec& sp
   if (spec.max_frames_in_flight() != 0) {
     result.max_frames_in_flight = static_cast<int>(spec.max_frames_in_flight());
   }
+  result.latency_budget_ms = spec.latency_budget_ms();
   std::vector<Fault> faults;
   for (const pb::BlockSpec& block : spec.blocks()) {
     result.blocks.push_back(FromProto(block, &faults));
@@ -174,6 +176,8 @@ pb::SequenceState ToProto(const SequenceStatus& status) {
   state.set_in_flight(static_cast<uint32_t>(stats.frames_in_flight));
   state.set_latency_p50_us(ToUs(stats.latency_p50_ns));
   state.set_latency_p99_us(ToUs(stats.latency_p99_ns));
+  state.set_latency_budget_ms(stats.latency_budget_ms);
+  state.set_over_budget(stats.over_budget);
   for (const BlockStats& block : stats.blocks) *state.add_blocks() = ToProto(block);
   if (!status.error.empty()) {
     pb::SequenceError* error = state.mutable_last_error();

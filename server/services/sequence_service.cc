@@ -35,8 +35,9 @@ struct UpdateParts {
 };
 
 Result<UpdateParts> PartsOf(const google::protobuf::FieldMask& mask) {
-  static const std::set<std::string> spec_fields = {"description", "blocks", "connections",
-                                                    "priority", "max_frames_in_flight"};
+  static const std::set<std::string> spec_fields = {"description",          "blocks",
+                                                    "connections",          "priority",
+                                                    "max_frames_in_flight", "latency_budget_ms"};
   if (mask.paths().empty()) return UpdateParts{true, spec_fields};
   UpdateParts parts;
   for (const std::string& path : mask.paths()) {
@@ -62,6 +63,7 @@ void Replace(const std::set<std::string>& fields, SequenceSpec from, SequenceSpe
   if (fields.contains("max_frames_in_flight")) {
     to->max_frames_in_flight = from.max_frames_in_flight;
   }
+  if (fields.contains("latency_budget_ms")) to->latency_budget_ms = from.latency_budget_ms;
 }
 
 Observation Observe(const SequenceStatus& status) {

@@ -32,6 +32,7 @@ TEST(CheckSequence, ReportsEveryFaultAtOnce) {
   spec.id = "Line 1";
   spec.priority = 11;
   spec.max_frames_in_flight = 0;
+  spec.latency_budget_ms = -1;
   spec.blocks = {
       SourceSpec("source"),
       {"step", "TestStep", {{"offset", int64_t{1001}}, {"gain", 1.5}, {"probe", true}}},
@@ -54,6 +55,7 @@ TEST(CheckSequence, ReportsEveryFaultAtOnce) {
           "characters, not \"Line 1\"",
           "sequence: priority must be -10 to 10, not 11",
           "sequence: max_frames_in_flight must be 1 to 16, not 0",
+          "sequence: latency_budget_ms must be 0 to 60000, not -1",
           "step.gain: there is no such parameter; TestStep has: probe, offset, fixed",
           "step.offset: offset must be -1000 to 1000, not 1001",
           "step.probe: probe must be a text, not true or false (true)",

@@ -91,6 +91,14 @@ TEST(SequenceJson, IsCanonical) {
   EXPECT_EQ(ParseSequence(kStereoJson).value(), spec) << "canonical order is sorted order";
 }
 
+TEST(SequenceJson, HasALatencyBudgetOnlyIfThereIsOne) {
+  SequenceSpec spec = StereoSpec();
+  EXPECT_EQ(ToJson(spec).find("latency_budget_ms"), std::string::npos);
+  spec.latency_budget_ms = 62.5;
+  EXPECT_NE(ToJson(spec).find("\"latency_budget_ms\": 62.5"), std::string::npos);
+  EXPECT_EQ(ParseSequence(ToJson(spec)).value().latency_budget_ms, 62.5);
+}
+
 TEST(SequenceJson, KeepsTheOrderOfTheText) {
   const auto spec = ParseSequence(
       R"({"id": "s", "blocks": [{"id": "b", "type": "T"}, {"id": "a", "type": "T"}]})");

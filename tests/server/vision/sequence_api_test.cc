@@ -49,6 +49,40 @@ TEST_F(SequenceApi, OfTwoEditorsTheLaterOneIsTurnedAway) {
   EXPECT_EQ("the first editor's", updated.spec().description());
 }
 
+TEST_F(SequenceApi, FramesBeyondTheLatencyBudgetAreCountedAndRaiseAnAlarm) {
+  SequenceSpec spec = CountSpec();
+  spec.latency_budget_ms = 1;  // the source alone takes 2 ms
+  EXPECT_EQ(1, Create(spec).spec().latency_budget_ms());
+  ASSERT_TRUE(Start("count").ok());
+  const auto alarm = [&] {
+    for (const AlarmBoard::Alarm& one : server_->alarms().List()) {
+      if (one.id == "latency/count") return one.message;
+    }
+    return std::string();
+  };
+  EXPECT_TRUE(WaitUntil([&] { return !alarm().empty(); }));
+  EXPECT_THAT(alarm(), HasSubstr("longer than its budget of 1 ms"));
+  const pb::SequenceState state = State("count");
+  EXPECT_EQ(1, state.latency_budget_ms());
+  EXPECT_EQ(state.frames(), state.over_budget());
+  EXPECT_EQ(pb::SEQUENCE_RUN_STATE_RUNNING, state.state());
+  ASSERT_TRUE(Stop("count").ok());
+
+  pb::GetSequenceRequest get;
+  get.set_id("count");
+  pb::Sequence stored;
+  ASSERT_TRUE(sequences_->GetSequence(ClientCall(operator_).context(), get, &stored).ok());
+  pb::UpdateSequenceRequest update;
+  update.set_id("count");
+  update.set_etag(stored.etag());
+  update.mutable_spec()->set_latency_budget_ms(60'000);
+  update.mutable_update_mask()->add_paths("spec.latency_budget_ms");
+  ASSERT_TRUE(sequences_->UpdateSequence(ClientCall(engineer_).context(), update, &stored).ok());
+  ASSERT_TRUE(Start("count").ok());
+  EXPECT_TRUE(WaitUntil([&] { return State("count").frames() >= 20; }));
+  EXPECT_EQ(0u, State("count").over_budget());
+}
+
 TEST_F(SequenceApi, AMaskedUpdateChangesOnlyWhatItNames) {
   const pb::Sequence created = Create(CountSpec());
   pb::UpdateSequenceRequest request;
