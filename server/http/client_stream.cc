@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace vs {
 namespace {
@@ -49,9 +50,13 @@ ClientStream::ClientStream(int fd)
 }
 
 ClientStream::~ClientStream() {
-  tls_.reset();
-  ::close(fd_);
+  Close();
   if (wake_event_ >= 0) ::close(wake_event_);
+}
+
+void ClientStream::Close() {
+  tls_.reset();
+  if (fd_ >= 0) ::close(std::exchange(fd_, -1));
 }
 
 std::optional<char> ClientStream::Peek(const Deadline& deadline) {

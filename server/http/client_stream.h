@@ -43,6 +43,8 @@ class ClientStream {
   // Ends the connection so that the client still gets what was written: without reading on for a
   // moment, a reset would overtake it.
   void CloseGently();
+  // Nothing but Wake and its like may be called after it.
+  void Close();
 
   enum class Event { kWoken, kGone, kTimeout };
   // Until Wake, until the client has closed its side or was cut off, or the deadline.
@@ -73,7 +75,7 @@ class ClientStream {
     void operator()(ssl_st* tls) const;
   };
 
-  const int fd_;
+  int fd_;
   const int wake_event_;
   std::unique_ptr<ssl_st, FreeTls> tls_;
   std::atomic<bool> reading_stopped_{false};

@@ -83,7 +83,8 @@ tl::expected<HttpRequest, std::optional<HttpResponse>> RequestReader::ReadHead(
     const Deadline& deadline) {
   http::request_parser<http::empty_body> parser;
   parser.header_limit(static_cast<uint32_t>(max_head_bytes_));
-  parser.body_limit(std::numeric_limits<uint64_t>::max());  // whoever reads the body knows its limit
+  parser.body_limit(
+      std::numeric_limits<uint64_t>::max());  // whoever reads the body knows its limit
   TimedStream stream(stream_, deadline);
   error_code error;
   http::read_header(stream, *buffer_, parser, error);

@@ -48,7 +48,7 @@ WebCall::WebCall(ClientStream& stream, RequestReader& reader, const HttpRequest&
 
 bool WebCall::Run(Dispatcher& dispatcher, const std::string& client_address) {
   const auto timeout = ParseTimeout(request_.Header("grpc-timeout"));
-  if (!timeout) return Write(std::nullopt, timeout.error()) && usable_;
+  if (!timeout) return Write(std::nullopt, timeout.error()) && SkipRequest();
   const Deadline deadline(clock_, timeout->value_or(kNoDeadline));
   const std::string method = request_.target.substr(0, request_.target.find('?'));
   call_ = dispatcher.Begin(method, CredentialOf(request_), client_address, *this);
@@ -66,7 +66,7 @@ bool WebCall::Run(Dispatcher& dispatcher, const std::string& client_address) {
     if (last) break;
   }
   call_->OnDone();
-  return usable_;
+  return SkipRequest();
 }
 
 void WebCall::Do(Step step) {
@@ -74,7 +74,6 @@ void WebCall::Do(Step step) {
     if (step.receive) call_->OnRequest(std::nullopt);
     if (step.send && !step.finish) call_->OnSent(false);
   } else if (step.finish) {
-    SkipRequest();
     Write(step.send, step.finish);
   } else if (step.receive) {
     HandOverRequest();
@@ -88,10 +87,12 @@ void WebCall::WaitForStep(const Deadline& deadline) {
     // What works on the call has not noticed yet that nobody waits. The client's next call must not
     // wait for that.
     usable_ = false;
-    stream_.CloseGently();
-    stream_.WaitForWake();
+    if (std::exchange(closed_, true)) {
+      stream_.WaitForWake();
+    } else {
+      stream_.CloseGently();  // may take a wake: look for a step again before waiting for one
+    }
   } else if (stream_.Wait(deadline) == ClientStream::Event::kGone) {
-    usable_ = false;
     answered_ = true;
     call_->OnCancelled();
   }
@@ -137,10 +138,10 @@ Result<std::string> WebCall::ReadRequest() {
   return MessageOf(std::move(*body));
 }
 
-void WebCall::SkipRequest() {
-  if (request_is_read_ || !usable_ || request_.content_bytes > kSkippedBytes) return;
-  const Deadline deadline(clock_, limits_.request_time);
-  request_is_read_ = reader_.ReadBody(request_.content_bytes, deadline).has_value();
+bool WebCall::SkipRequest() {
+  if (!usable_ || request_is_read_) return usable_;
+  return reader_.ReadBody(request_.content_bytes, Deadline(clock_, limits_.request_time))
+      .has_value();
 }
 
 void WebCall::GiveUp(const Status& status) {
@@ -151,8 +152,9 @@ void WebCall::GiveUp(const Status& status) {
 bool WebCall::Write(const std::optional<WireMessage>& message,
                     const std::optional<Status>& status) {
   answered_ = answered_ || status.has_value();
-  // What was not read of the request would be taken for the next one.
-  usable_ = usable_ && request_is_read_ && request_.keep_alive;
+  // What is left of the request would be taken for the next one.
+  const bool request_goes = request_is_read_ || request_.content_bytes <= kSkippedBytes;
+  usable_ = usable_ && request_goes && request_.keep_alive;
   std::vector<std::string> own;  // what is not the message's
   own.reserve(4);
   std::vector<std::string_view> pieces;

@@ -60,8 +60,8 @@ class WebCall final : public Channel {
   void WaitForStep(const Deadline& deadline);
   void HandOverRequest();
   Result<std::string> ReadRequest();
-  // Of a call that ended without looking at it.
-  void SkipRequest();
+  // After the answer, reads a request that nobody wanted. True: the connection can be used on.
+  bool SkipRequest();
   // The call ends with `status`, whatever the dispatcher says.
   void GiveUp(const Status& status);
   // Either may be absent; with a status the answer is complete. False: it cannot be sent.
@@ -84,6 +84,7 @@ class WebCall final : public Channel {
   bool head_is_sent_ = false;
   bool answered_ = false;  // completely, or given up
   bool usable_ = true;     // the connection, after this call
+  bool closed_ = false;    // the connection, before the dispatcher is done
 };
 
 }  // namespace vs
