@@ -1,9 +1,6 @@
 import react from '@vitejs/plugin-react';
 import { defineConfig } from 'vitest/config';
 
-// What is large and only some pages need gets its own file, loaded with those pages.
-const lazyLibraries = ['three', 'uplot', '@xyflow', '@dagrejs'];
-
 export default defineConfig({
   plugins: [react()],
   build: {
@@ -11,16 +8,6 @@ export default defineConfig({
     outDir: process.env.VS_WEB_OUT ?? 'dist',
     emptyOutDir: true,
     target: 'es2023',
-    rolldownOptions: {
-      output: {
-        codeSplitting: {
-          groups: lazyLibraries.map((name) => ({
-            name: name.replace('@', ''),
-            test: new RegExp(`node_modules/${name}/`),
-          })),
-        },
-      },
-    },
   },
   worker: { format: 'es' },
   test: {
