@@ -1,6 +1,7 @@
 import i18next from 'i18next';
 import { initReactI18next } from 'react-i18next';
-import { texts } from './texts';
+import * as shell from '../shell/text';
+import type { texts } from './texts';
 
 const kStorageKey = 'visionserver.language';
 
@@ -19,10 +20,12 @@ function initialLanguage(): Language {
   return navigator.languages.map((tag) => tag.slice(0, 2)).find(isLanguage) ?? 'en';
 }
 
-function resources(language: Language) {
-  return Object.fromEntries(
-    Object.entries(texts).map(([folder, module]) => [folder, module[language]]),
-  );
+/** Makes the texts of a folder known; each page's come with the page (see routes.tsx). */
+export function addTexts<Folder extends keyof typeof texts>(
+  folder: Folder,
+  text: (typeof texts)[Folder],
+): void {
+  for (const language of languages) i18next.addResourceBundle(language, folder, text[language]);
 }
 
 /** Chooses the language of the page and remembers it. */
@@ -38,9 +41,9 @@ i18next.on('languageChanged', (language) => {
 await i18next.use(initReactI18next).init({
   lng: initialLanguage(),
   fallbackLng: 'en',
-  ns: Object.keys(texts),
+  ns: ['shell'],
   defaultNS: 'shell',
-  resources: { en: resources('en'), de: resources('de') },
+  resources: { en: { shell: shell.en }, de: { shell: shell.de } },
   interpolation: { escapeValue: false }, // React escapes
 });
 

@@ -46,7 +46,7 @@ export function CameraTable({ cameras }: { cameras: Camera[] }) {
           return (
             <Table.Tr key={camera.id}>
               <Table.Td>
-                <Text size="sm" fw={600}>
+                <Text size="sm" fw={600} style={{ whiteSpace: 'nowrap' }}>
                   {camera.id}
                 </Text>
                 <Text size="xs" c="dimmed" title={camera.uri}>

@@ -22,13 +22,13 @@ function Section<Data>({
   children: (data: Data) => ReactNode;
 }) {
   return (
-    <section className="vs-panel" aria-label={title}>
+    <div className="vs-panel">
       <Title order={2} mb="sm">
         {title}
       </Title>
       {!isConnectionLost(query.error) && <ErrorNote error={query.error} />}
       {query.data !== undefined && children(query.data)}
-    </section>
+    </div>
   );
 }
 

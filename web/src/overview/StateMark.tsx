@@ -15,7 +15,7 @@ export function StateMark({ level, label }: { level: Level; label: string }) {
   const colour = colours[level];
   return (
     <Group gap={6} wrap="nowrap" c={colour}>
-      <svg viewBox="0 0 10 10" width="10" height="10" aria-hidden="true">
+      <svg viewBox="0 0 10 10" width="10" height="10" style={{ flex: 'none' }} aria-hidden="true">
         {level === 'good' && <circle cx="5" cy="5" r="4.5" fill={colour} />}
         {level === 'off' && (
           <circle cx="5" cy="5" r="3.5" fill="none" stroke={colour} strokeWidth="1.5" />

@@ -127,7 +127,7 @@ export const de: typeof en = {
     closed: 'Geschlossen',
     opening: 'Wird geöffnet',
     idle: 'Bereit',
-    streaming: 'Liefert Bilder',
+    streaming: 'Aktiv',
     stalled: 'Stockt',
     lost: 'Weg',
   },

@@ -1,8 +1,8 @@
 import { MantineProvider } from '@mantine/core';
-import { Notifications } from '@mantine/notifications';
 import { QueryClientProvider } from '@tanstack/react-query';
 import type { ReactNode } from 'react';
 import { queryClient } from '../api/queryClient';
+import { Messages } from './messages';
 import { PageBoundary } from './PageErrors';
 import { cssVariables, theme } from './theme';
 
@@ -15,9 +15,9 @@ export function App({ children, env }: { children: ReactNode; env?: 'default' | 
       defaultColorScheme="dark"
       env={env}
     >
-      <Notifications position="bottom-right" />
       <QueryClientProvider client={queryClient}>
         <PageBoundary>{children}</PageBoundary>
+        <Messages />
       </QueryClientProvider>
     </MantineProvider>
   );

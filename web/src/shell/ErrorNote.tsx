@@ -1,9 +1,9 @@
 import { Alert } from '@mantine/core';
-import { notifications } from '@mantine/notifications';
 import { useTranslation } from 'react-i18next';
 import { headingOf, messageOf } from '../api/errors';
 import { i18next } from '../i18n';
 import { AlertIcon } from './icons';
+import { showMessage } from './messages';
 
 /** An error where it happened: a heading in the user's language, and the server's own text. */
 export function ErrorNote({ error }: { error: unknown }) {
@@ -24,12 +24,9 @@ export function ErrorNote({ error }: { error: unknown }) {
 
 /** An error of something that has no place of its own on the page, such as a button in a table. */
 export function notifyError(error: unknown): void {
-  notifications.show({
-    color: 'red',
+  showMessage({
+    kind: 'error',
     title: i18next.t(headingOf(error), { ns: 'shell' }),
-    message: messageOf(error),
-    autoClose: 15000,
-    withBorder: true,
-    role: 'alert',
+    text: messageOf(error),
   });
 }

@@ -1,5 +1,4 @@
 import { Button, Menu, Modal } from '@mantine/core';
-import { notifications } from '@mantine/notifications';
 import { useMutation } from '@tanstack/react-query';
 import { useState } from 'react';
 import { useTranslation } from 'react-i18next';
@@ -8,6 +7,7 @@ import { queryClient } from '../api/queryClient';
 import { useSession } from '../api/session';
 import { ChangePasswordForm } from './ChangePasswordForm';
 import { UserIcon } from './icons';
+import { showMessage } from './messages';
 import { roleKey } from './roles';
 
 /** Who is logged in, and what they do with their own account. */
@@ -26,7 +26,7 @@ export function UserMenu() {
   if (!login) return null;
   const changed = () => {
     setChanging(false);
-    notifications.show({ color: 'teal', message: t('password.changed'), role: 'status' });
+    showMessage({ kind: 'done', text: t('password.changed') });
   };
   return (
     <>

@@ -11,7 +11,9 @@ export function WideTable({ label, children }: { label: string; children: ReactN
       role="region"
       aria-label={label}
     >
-      <Table verticalSpacing="xs">{children}</Table>
+      <Table className="vs-table" verticalSpacing="xs" horizontalSpacing="xs">
+        {children}
+      </Table>
     </Table.ScrollContainer>
   );
 }

@@ -20,6 +20,14 @@ if (typeof window !== 'undefined') {
     }),
   });
   Element.prototype.scrollIntoView = () => {};
+
+  const [{ addTexts }, { texts }] = await Promise.all([
+    import('../i18n'),
+    import('../i18n/texts'),
+  ]);
+  for (const [folder, text] of Object.entries(texts)) {
+    addTexts(folder as keyof typeof texts, text as (typeof texts)['shell']);
+  }
 }
 
 // A busy machine is no fault of the page.
