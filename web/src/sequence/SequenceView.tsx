@@ -2,7 +2,6 @@ import { Loader, Tabs } from '@mantine/core';
 import { lazy, Suspense, useEffect, useMemo, useState } from 'react';
 import { useTranslation } from 'react-i18next';
 import type { BlockType, Sequence, SequenceSpec } from '../gen/visionserver/v1/sequence_pb';
-import { ParameterForm } from './form/ParameterForm';
 import { mainMap, mainPicture, outputsOf } from './outputs';
 import classes from './page.module.css';
 import { SequenceHeader } from './SequenceHeader';
@@ -10,7 +9,8 @@ import { isRunning, useSequenceState } from './useSequenceState';
 import { LiveScene } from './view/liveScene';
 import { PicturePanel } from './view/PicturePanel';
 
-// Large libraries, and not needed for the first picture.
+// Not needed for the first picture; the latter two bring large libraries.
+const ParameterForm = lazy(() => import('./form/ParameterForm'));
 const GraphPanel = lazy(() => import('./graph/GraphPanel'));
 const CloudPanel = lazy(() => import('./cloud/CloudPanel'));
 
@@ -83,14 +83,16 @@ export function SequenceView({ sequence: { id }, spec, blockTypes }: Props) {
           </Tabs.Panel>
         </Tabs>
         <aside className={classes.aside}>
-          <ParameterForm
-            sequence={id}
-            spec={spec}
-            blockTypes={blockTypes}
-            running={isRunning(state?.state)}
-            filter={filter}
-            setFilter={setFilter}
-          />
+          <Suspense fallback={<Loader />}>
+            <ParameterForm
+              sequence={id}
+              spec={spec}
+              blockTypes={blockTypes}
+              running={isRunning(state?.state)}
+              filter={filter}
+              setFilter={setFilter}
+            />
+          </Suspense>
         </aside>
       </div>
     </div>

@@ -7,6 +7,8 @@ import { sliderScale } from './sliderScale';
 import { TypedText } from './TypedText';
 import { parseNumber } from './value';
 
+const LONGEST_UNIT = 4;
+
 /** A slider whose knob is where the user wants it, and a number that says what the server has. */
 export function NumberField({ field, id, disabled, onEdit }: ControlProps) {
   const { i18n } = useTranslation();
@@ -50,7 +52,8 @@ export function NumberField({ field, id, disabled, onEdit }: ControlProps) {
           onEdit(Math.min(Math.max(next, info.min ?? -Infinity), info.max ?? Infinity));
         }}
       />
-      <span className={classes.unit}>{info.unit}</span>
+      {/* Long ones stand below, with the range. */}
+      <span className={classes.unit}>{info.unit.length <= LONGEST_UNIT ? info.unit : ''}</span>
     </div>
   );
 }

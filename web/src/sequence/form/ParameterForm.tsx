@@ -16,7 +16,7 @@ interface Props {
 }
 
 /** All parameters of a sequence, as the block types describe them. */
-export function ParameterForm(props: Props) {
+export default function ParameterForm(props: Props) {
   const { sequence, spec, blockTypes, running, filter, setFilter } = props;
   const { t } = useTranslation('sequence');
   const editor = useParameterEditor(sequence);

@@ -29,8 +29,8 @@ export interface ParameterCalls {
   list(): Promise<Parameter[]>;
   set(path: string, info: ParameterInfo, value: Plain): Promise<Confirmed>;
   reset(paths: string[]): Promise<Confirmed>;
-  /** What to tell the user of a call that failed. */
-  textOf(error: unknown): string;
+  /** What to tell the user of a call that failed, beside this parameter. */
+  textOf(error: unknown, path: string): string;
 }
 
 /**
@@ -135,7 +135,7 @@ export class ParameterEditor {
   /** Snaps back to what the server has, unless something newer is wanted already. */
   private refuse(path: string, error: unknown): void {
     const draft = this.wanted.get(path);
-    this.put(path, { draft, error: draft === undefined ? this.calls.textOf(error) : '' });
+    this.put(path, { draft, error: draft === undefined ? this.calls.textOf(error, path) : '' });
   }
 
   private put(path: string, change: Partial<Field>): void {

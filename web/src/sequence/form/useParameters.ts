@@ -44,6 +44,11 @@ function callsOf(sequence: string): ParameterCalls {
       return api.parameters.setParameters({ sequence, values }, options);
     },
     reset: (paths) => api.parameters.resetParameters({ sequence, paths }, options),
-    textOf: messageOf,
+    // Of all faults the one that is about this parameter; its name is beside the text already.
+    textOf: (error, path) => {
+      const lines = messageOf(error).split('\n');
+      const own = lines.find((line) => line.startsWith(`${path}: `));
+      return own?.slice(path.length + 2) ?? lines.join('\n');
+    },
   };
 }
