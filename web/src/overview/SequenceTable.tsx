@@ -31,6 +31,9 @@ export function SequenceTable({ rows }: { rows: SequenceRow[] }) {
             <Table.Th ta="right">{t('rate')}</Table.Th>
             <Table.Th ta="right">{t('latencyP50')}</Table.Th>
             <Table.Th ta="right">{t('latencyP99')}</Table.Th>
+            <Table.Th ta="right" title={t('budgetHelp')}>
+              {t('budget')}
+            </Table.Th>
             <Table.Th ta="right">{t('frames')}</Table.Th>
             <Table.Th ta="right">{t('dropped')}</Table.Th>
             <Table.Th ta="right">{t('failed')}</Table.Th>
@@ -71,6 +74,14 @@ export function SequenceTable({ rows }: { rows: SequenceRow[] }) {
                 </Table.Td>
                 <Table.Td ta="right">{ms(state?.latencyP50Us)}</Table.Td>
                 <Table.Td ta="right">{ms(state?.latencyP99Us)}</Table.Td>
+                <Table.Td ta="right">
+                  {state?.latencyBudgetMs ? formatNumber(state.latencyBudgetMs, 1) : none}
+                  {state !== undefined && state.overBudget > 0n && (
+                    <Text size="xs" c="var(--vs-warning)">
+                      {t('overBudget', { number: formatNumber(state.overBudget) })}
+                    </Text>
+                  )}
+                </Table.Td>
                 <Table.Td ta="right">{state ? formatNumber(state.frames) : none}</Table.Td>
                 <Table.Td ta="right">{state ? formatNumber(state.dropped) : none}</Table.Td>
                 <Table.Td ta="right">{state ? formatNumber(state.failed) : none}</Table.Td>
