@@ -14,6 +14,8 @@ export default function SequencePage() {
   usePageTitle(id);
   const query = useQuery({
     queryKey: ['sequence', id],
+    // Somebody may edit it meanwhile.
+    refetchInterval: 10_000,
     queryFn: async () => {
       const [sequence, { blockTypes }] = await Promise.all([
         api.sequences.getSequence({ id }),

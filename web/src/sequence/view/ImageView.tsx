@@ -1,4 +1,5 @@
 import { type ReactNode, useEffect, useRef } from 'react';
+import { useTranslation } from 'react-i18next';
 import classes from './view.module.css';
 import { ImagePainter } from './imagePainter';
 import { listenToPointing } from './pointing';
@@ -15,6 +16,7 @@ interface Props {
 
 /** One of the pictures that zoom and pan together. */
 export function ImageView({ scene, what, label, onChoose, children }: Props) {
+  const { t } = useTranslation('sequence');
   const canvas = useRef<HTMLCanvasElement>(null);
   const action = useRef(onChoose);
   useEffect(() => {
@@ -39,7 +41,9 @@ export function ImageView({ scene, what, label, onChoose, children }: Props) {
 
   return (
     <figure className={classes.view}>
-      <figcaption className={classes.caption}>{label}</figcaption>
+      <figcaption className={classes.caption} title={t('view.keys')}>
+        {label}
+      </figcaption>
       <div className={classes.canvasBox}>
         <canvas
           ref={canvas}
@@ -47,6 +51,7 @@ export function ImageView({ scene, what, label, onChoose, children }: Props) {
           tabIndex={0}
           role="img"
           aria-label={label}
+          aria-description={t('view.keys')}
           data-testid={`view-${what}`}
         />
         {children}

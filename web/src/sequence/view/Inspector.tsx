@@ -1,3 +1,4 @@
+import { VisuallyHidden } from '@mantine/core';
 import { useEffect, useRef } from 'react';
 import { useTranslation } from 'react-i18next';
 import { number } from './format';
@@ -8,9 +9,13 @@ import classes from './view.module.css';
 const fields = ['x', 'y', 'grey', 'disparity', 'depth', 'X', 'Y', 'Z', 'reason'] as const;
 type Field = (typeof fields)[number];
 
+// Keys repeat; only where the crosshair comes to rest is spoken.
+const SPEAK_AFTER_MS = 400;
+
 /** All that is known of the pixel under the pointer or crosshair, as it changes from frame to frame. */
 export function Inspector({ scene }: { scene: Scene }) {
   const { t, i18n } = useTranslation('sequence');
+  const spoken = useRef<HTMLDivElement>(null);
   const cells = useRef<Partial<Record<Field, HTMLElement | null>>>({});
 
   useEffect(() => {
@@ -29,22 +34,43 @@ export function Inspector({ scene }: { scene: Scene }) {
     return () => endings.forEach((end) => end());
   }, [scene, t, i18n.language]);
 
+  // For screen readers: the pixel that was chosen, once, and not each frame of it.
+  useEffect(() => {
+    let timer: ReturnType<typeof setTimeout> | undefined;
+    const speak = () => {
+      clearTimeout(timer);
+      timer = setTimeout(() => {
+        const { x, y, depth, reason } = textsOf(scene, i18n.language, (one) => t(`reason.${one}`));
+        if (!spoken.current || x === undefined || y === undefined) return;
+        spoken.current.textContent = `x ${x}, y ${y}: ${depth ?? reason ?? '–'}`;
+      }, SPEAK_AFTER_MS);
+    };
+    const end = scene.pinned.on(speak);
+    return () => {
+      clearTimeout(timer);
+      end();
+    };
+  }, [scene, t, i18n.language]);
+
   return (
-    <dl className={classes.inspector} data-testid="inspector">
-      {fields.map((field) => (
-        <div key={field} data-field={field}>
-          <dt>{t(`inspector.${field}`)}</dt>
-          <dd
-            ref={(element) => {
-              cells.current[field] = element;
-            }}
-            data-testid={`inspector-${field}`}
-          >
-            –
-          </dd>
-        </div>
-      ))}
-    </dl>
+    <>
+      <VisuallyHidden ref={spoken} role="status" />
+      <dl className={classes.inspector} data-testid="inspector">
+        {fields.map((field) => (
+          <div key={field} data-field={field}>
+            <dt>{t(`inspector.${field}`)}</dt>
+            <dd
+              ref={(element) => {
+                cells.current[field] = element;
+              }}
+              data-testid={`inspector-${field}`}
+            >
+              –
+            </dd>
+          </div>
+        ))}
+      </dl>
+    </>
   );
 }
 

@@ -21,6 +21,8 @@ export class Scene {
   readonly mapChanged = new Signal();
   readonly pictureChanged = new Signal();
   readonly cursorChanged = new Signal();
+  /** The user has chosen a pixel, by click or key; not just moved the pointer. */
+  readonly pinned = new Signal();
   readonly marksChanged = new Signal();
 
   map: MapFrame | undefined;
@@ -34,7 +36,7 @@ export class Scene {
 
   private automatic: { kind: MapFrame['kind']; range: AutoRange } | undefined;
   private hovered: Pixel | undefined;
-  private pinned: Pixel | undefined;
+  private chosen: Pixel | undefined;
 
   show(frame: Frame, display: Display, now_ms: number): void {
     if (frame.kind === 'picture') {
@@ -59,7 +61,7 @@ export class Scene {
 
   /** The pixel that the inspector reads: under the pointer, else the one that was chosen. */
   get cursor(): Pixel | undefined {
-    return this.hovered ?? this.pinned;
+    return this.hovered ?? this.chosen;
   }
 
   hover(pixel: Pixel | undefined): void {
@@ -69,9 +71,10 @@ export class Scene {
 
   /** Chooses a pixel that is read when the pointer is away. */
   pin(pixel: Pixel | undefined): void {
-    this.pinned = pixel;
+    this.chosen = pixel;
     this.hovered = undefined;
     this.cursorChanged.emit();
+    this.pinned.emit();
   }
 
   /** Adds an end of a distance; a third one begins a new distance. */
