@@ -158,7 +158,9 @@ Result<std::unique_ptr<SqlQuery>> SqlQuery::Open(const std::filesystem::path& fi
   VS_ASSIGN_OR_RETURN(Database database, Database::Open(file, Database::Access::kReadOnly));
   database.SetBusyTimeout(std::chrono::seconds(1));
   VS_RETURN_IF_ERROR(database.Execute(
-      "PRAGMA query_only = ON; PRAGMA temp_store = MEMORY; SELECT 1 FROM result LIMIT 1"));
+      "PRAGMA query_only = ON; PRAGMA temp_store = MEMORY; SELECT 1 FROM result LIMIT 1;"
+      // SQLite makes this table when it is first named, which the limits below would not allow.
+      "SELECT 1 FROM json_each('[]')"));
   sqlite3* connection = database.handle();
   sqlite3_db_config(connection, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_limit(connection, SQLITE_LIMIT_ATTACHED, 0);

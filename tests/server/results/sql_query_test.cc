@@ -84,6 +84,13 @@ TEST_F(SqlQueryTest, MeasuredValuesAreRowsOfAView) {
   EXPECT_THAT(table.rows[0], ElementsAre(SqlValue("gap_mm"), SqlValue(0.3)));
 }
 
+TEST_F(SqlQueryTest, MeasuredValuesAreReachedWithoutTheViewToo) {
+  const SqlTable table = Run("SELECT (SELECT value FROM json_each(fields) WHERE key = 'gap_mm')"
+                             " FROM result WHERE number = 3")
+                             .value();
+  EXPECT_THAT(table.rows[0], ElementsAre(SqlValue(0.3)));
+}
+
 TEST_F(SqlQueryTest, CarriesEveryTypeOfValue) {
   const SqlTable table = Run("SELECT ?1 AS v, ?2 AS v, ?3, NULL, x'00ff' AS v",
                              {int64_t{-1}, 0.5, std::string("text")})
