@@ -29,6 +29,12 @@ describe('a lost connection', () => {
     expect(useConnection.getState()).toEqual({ lost: false, recoveries: 1 });
   });
 
+  it('is seen in what fetch() throws, as interceptors get it', () => {
+    setProbe(() => Promise.resolve());
+    noteFailure(new TypeError('Failed to fetch'));
+    expect(useConnection.getState().lost).toBe(true);
+  });
+
   it('is found again by an answer that is an error', async () => {
     setProbe(() => Promise.reject(new ConnectError('busy', Code.ResourceExhausted)));
     noteFailure(gone());

@@ -1,3 +1,4 @@
+import { ConnectError } from '@connectrpc/connect';
 import { create } from 'zustand';
 import { isConnectionLost } from './errors';
 import { sleep } from './wait';
@@ -35,9 +36,12 @@ async function probeUntilAnswered(): Promise<void> {
   useConnection.setState((state) => ({ lost: false, recoveries: state.recoveries + 1 }));
 }
 
-/** Told by the transport of every call that failed. */
+/**
+ * Told by the transport of every call that failed. Interceptors see what fetch() throws as it is;
+ * Connect makes its own error of it later.
+ */
 export function noteFailure(error: unknown): void {
-  if (!isConnectionLost(error) || useConnection.getState().lost) return;
+  if (!isConnectionLost(ConnectError.from(error)) || useConnection.getState().lost) return;
   useConnection.setState({ lost: true });
   void probeUntilAnswered();
 }
