@@ -1,9 +1,9 @@
 import { Button, Group, Text } from '@mantine/core';
-import { ConnectError } from '@connectrpc/connect';
 import { useRef, useState } from 'react';
 import { useTranslation } from 'react-i18next';
 
 import { api } from '../api/clients';
+import { messageOf } from '../api/errors';
 import { bytesText, csvName, download, gatherCsv } from './csv';
 import { toFilter, type Selection } from './filter';
 
@@ -27,7 +27,7 @@ export function ExportButton({ selection }: { selection: Selection }) {
       );
       download(await gatherCsv(pieces, setBytes), csvName(now));
     } catch (error) {
-      if (!controller.signal.aborted) setFailure(ConnectError.from(error).rawMessage);
+      if (!controller.signal.aborted) setFailure(messageOf(error));
     } finally {
       setBytes(undefined);
     }

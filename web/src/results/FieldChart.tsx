@@ -5,8 +5,8 @@ import { useEffect, useMemo, useRef } from 'react';
 import { useTranslation } from 'react-i18next';
 import uPlot from 'uplot';
 
+import { ErrorNote } from '../shell/ErrorNote';
 import { chartData, chartOptions, heightPx } from './chart';
-import { Failure } from './Failure';
 import { toCondition, type Selection } from './filter';
 import { bucketsOf, fieldOverTime, type Bucket } from './statements';
 import { useSql } from './useResults';
@@ -43,7 +43,7 @@ export default function FieldChart({ selection, nowMs, fields, field, onField }:
         onChange={(event) => onField(event.currentTarget.value)}
         data={fields.includes(drawn) ? fields : [drawn, ...fields]}
       />
-      {points.isError && <Failure error={points.error} onAgain={() => void points.refetch()} />}
+      <ErrorNote error={points.error} />
       {points.isPending && <Text role="status">{t('loading')}</Text>}
       <Plot buckets={points.data ?? noBuckets} field={drawn} />
       <Text size="sm">{t('chartNote')}</Text>

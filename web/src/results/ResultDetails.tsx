@@ -4,8 +4,8 @@ import { useTranslation } from 'react-i18next';
 
 import { api } from '../api/clients';
 import type { Result } from '../gen/visionserver/v1/result_pb';
+import { ErrorNote } from '../shell/ErrorNote';
 import { ClassBadge } from './ClassBadge';
-import { Failure } from './Failure';
 import { stateWords } from './filter';
 import { ResultFile } from './ResultFile';
 import { durationText, localText, utcText } from './time';
@@ -36,7 +36,7 @@ export function ResultDetails({ resultId, onClose }: Props) {
       title={t('resultTitle', { number })}
       closeButtonProps={{ 'aria-label': t('close') }}
     >
-      {found.isError && <Failure error={found.error} onAgain={() => void found.refetch()} />}
+      <ErrorNote error={found.error} />
       {found.isFetching && <Text role="status">{t('loading')}</Text>}
       {found.data && <Details result={found.data} />}
     </Drawer>

@@ -1,10 +1,10 @@
 import { Alert, Button, Stack, Text } from '@mantine/core';
-import { ConnectError } from '@connectrpc/connect';
 import { useQuery } from '@tanstack/react-query';
 import { useCallback, useMemo } from 'react';
 import { useTranslation } from 'react-i18next';
 
 import { api } from '../api/clients';
+import { messageOf } from '../api/errors';
 import type { GetResultFileResponse } from '../gen/visionserver/v1/result_pb';
 import { bytesText, download } from './csv';
 import { Grey16Picture } from './Grey16Picture';
@@ -22,8 +22,7 @@ export function ResultFile({ resultId, field }: { resultId: string; field: strin
   });
   if (file.isPending) return <Text role="status">{t('loading')}</Text>;
   if (file.isError) {
-    const { rawMessage } = ConnectError.from(file.error);
-    return <Alert color="red">{t('fileFailed', { field, message: rawMessage })}</Alert>;
+    return <Alert color="red">{t('fileFailed', { field, message: messageOf(file.error) })}</Alert>;
   }
   return <FileShown field={field} file={file.data} />;
 }

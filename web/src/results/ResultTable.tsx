@@ -2,8 +2,8 @@ import { Anchor, Button, Stack, Table, Text } from '@mantine/core';
 import { useTranslation } from 'react-i18next';
 
 import type { Result } from '../gen/visionserver/v1/result_pb';
+import { ErrorNote } from '../shell/ErrorNote';
 import { ClassBadge } from './ClassBadge';
-import { Failure } from './Failure';
 import { stateWords, type Selection } from './filter';
 import { newerLimit } from './statements';
 import { localText, utcText } from './time';
@@ -22,9 +22,7 @@ interface Props {
 /** The selected results, newest first. */
 export function ResultTable({ selection, nowMs, pages, results, onOpen, onRefresh }: Props) {
   const { t } = useTranslation('results');
-  if (pages.isError) {
-    return <Failure error={pages.error} onAgain={() => void pages.refetch()} />;
-  }
+  if (pages.isError) return <ErrorNote error={pages.error} />;
   if (pages.isPending) return <Text role="status">{t('loading')}</Text>;
   return (
     <Stack gap="sm">

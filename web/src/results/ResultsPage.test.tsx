@@ -98,7 +98,7 @@ it('runs SQL by Ctrl+Enter and shows what the server says of it', async () => {
   const box = await screen.findByLabelText('Query');
   fireEvent.change(box, { target: { value: 'DROP TABLE result' } });
   fireEvent.keyDown(box, { key: 'Enter', ctrlKey: true });
-  expect((await screen.findByRole('alert')).textContent).toBe('SQL: only a SELECT is allowed');
+  expect((await screen.findByRole('alert')).textContent).toContain('SQL: only a SELECT is allowed');
 
   fireEvent.change(box, { target: { value: 'SELECT 1' } });
   fireEvent.change(screen.getByLabelText('Most rows'), { target: { value: '1' } });

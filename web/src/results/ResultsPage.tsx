@@ -3,6 +3,7 @@ import { lazy, Suspense, useMemo, useState } from 'react';
 import { useTranslation } from 'react-i18next';
 import { useSearchParams } from 'react-router';
 
+import { usePageTitle } from '../shell/usePageTitle';
 import { ExportButton } from './ExportButton';
 import { readSelection, writeSelection, type Selection } from './filter';
 import { ResultDetails } from './ResultDetails';
@@ -19,6 +20,7 @@ const views = ['table', 'chart', 'sql'] as const;
 /** What sequences found. Everything that is chosen lies in the address, so that it can be shared. */
 export default function ResultsPage() {
   const { t } = useTranslation('results');
+  usePageTitle(t('title'));
   const [address, setAddress] = useSearchParams();
   // The end of ranges such as the last hour: stands still until the user asks for newer ones.
   const [nowMs, setNowMs] = useState(() => Date.now());
@@ -40,7 +42,7 @@ export default function ResultsPage() {
     });
 
   return (
-    <Stack gap="md">
+    <Stack gap="md" className="vs-panel">
       <Group justify="space-between">
         <Title order={1}>{t('title')}</Title>
         <ExportButton selection={selection} />

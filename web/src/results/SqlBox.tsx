@@ -1,16 +1,16 @@
-import { Alert, Button, Group, NativeSelect, NumberInput, Stack, Text, Textarea } from '@mantine/core';
-import { ConnectError } from '@connectrpc/connect';
+import { Button, Group, NativeSelect, NumberInput, Stack, Textarea } from '@mantine/core';
 import { useRef, useState } from 'react';
 import { useTranslation } from 'react-i18next';
 
 import { api } from '../api/clients';
 import type { QueryResultsResponse } from '../gen/visionserver/v1/result_pb';
+import { ErrorNote } from '../shell/ErrorNote';
 import { SqlAnswer } from './SqlAnswer';
 import { exampleNames, examples, type ExampleName } from './examples';
 
 interface Outcome {
   answer?: QueryResultsResponse;
-  message?: string;
+  error?: unknown;
   ms: number;
 }
 
@@ -33,7 +33,7 @@ export function SqlBox() {
     const request = { sql, maxRows, timeout: { seconds: BigInt(seconds) } };
     const result = await api.results.queryResults(request, { signal: controller.signal }).then(
       (answer) => ({ answer }),
-      (error: unknown) => ({ message: ConnectError.from(error).rawMessage }),
+      (error: unknown) => ({ error }),
     );
     setOutcome({ ...result, ms: Math.round(performance.now() - started) });
     setBusy(false);
@@ -52,7 +52,7 @@ export function SqlBox() {
         rows={9}
         resize="vertical"
         spellCheck={false}
-        error={outcome?.message !== undefined}
+        error={outcome?.error !== undefined}
         styles={{ input: { fontFamily: 'monospace' } }}
       />
       <Group align="end" gap="sm">
@@ -76,11 +76,7 @@ export function SqlBox() {
           </Button>
         )}
       </Group>
-      {outcome?.message !== undefined && (
-        <Alert color="red" role="alert">
-          <Text ff="monospace">{outcome.message}</Text>
-        </Alert>
-      )}
+      <ErrorNote error={outcome?.error} />
       {outcome?.answer && <SqlAnswer answer={outcome.answer} ms={outcome.ms} />}
     </Stack>
   );

@@ -1,8 +1,8 @@
 import { Group, Paper, Text } from '@mantine/core';
 import { useTranslation } from 'react-i18next';
 
+import { ErrorNote } from '../shell/ErrorNote';
 import { toCondition, type Selection } from './filter';
-import { Failure } from './Failure';
 import { countClasses, shareText, yieldOf, type Yield } from './statements';
 import { useSql } from './useResults';
 
@@ -16,9 +16,7 @@ export function YieldCounters({ selection, nowMs }: { selection: Selection; nowM
     () => countClasses(toCondition(selection, nowMs)),
     (answer) => yieldOf(answer.table),
   );
-  if (counted.isError) {
-    return <Failure error={counted.error} onAgain={() => void counted.refetch()} />;
-  }
+  if (counted.isError) return <ErrorNote error={counted.error} />;
   const number = (word: keyof Yield) => counted.data?.[word].toLocaleString(i18n.language) ?? '…';
   return (
     <Group component="dl" gap="sm" m={0} aria-label={t('yield')} aria-busy={counted.isFetching}>

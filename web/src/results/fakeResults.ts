@@ -13,6 +13,7 @@ import {
   type Result,
 } from '../gen/visionserver/v1/result_pb';
 import { SequenceService } from '../gen/visionserver/v1/sequence_pb';
+import { SystemService } from '../gen/visionserver/v1/system_pb';
 import { intValue, stringValue } from './values';
 
 export const asked = { lists: [] as ListResultsRequest[], queries: [] as QueryResultsRequest[] };
@@ -62,10 +63,12 @@ const transport = createRouterTransport(({ service }) => {
     getResult: ({ resultId }) => resultOf(Number(resultId.slice(3)), { reason: 'too wide' }),
     queryResults: answer,
   });
+  service(SystemService, { getServerInfo: () => ({ name: 'cell-7' }) });
   service(SequenceService, { listSequences: () => ({ sequences: [] }) });
 });
 
 export const fakeApi = {
   results: createClient(ResultService, transport),
   sequences: createClient(SequenceService, transport),
+  system: createClient(SystemService, transport),
 };

@@ -10,6 +10,7 @@ import { toNumber } from './values';
 const pageSize = 100;
 const pollMs = 5000;
 const timeout = { seconds: 10n };
+const timeoutMs = 12_000; // the server's own limit says why
 
 // One statement of this page; `key` tells it apart from others.
 export function useSql<T>(
@@ -21,7 +22,12 @@ export function useSql<T>(
   return useQuery({
     queryKey: ['results', 'sql', ...key],
     queryFn: async ({ signal }) =>
-      read(await api.results.queryResults({ ...statement(), maxRows: 10_000, timeout }, { signal })),
+      read(
+        await api.results.queryResults(
+          { ...statement(), maxRows: 10_000, timeout },
+          { signal, timeoutMs },
+        ),
+      ),
     ...options,
   });
 }
@@ -34,7 +40,7 @@ export function useResultPages(selection: Selection, nowMs: number) {
     queryFn: ({ pageParam, signal }) =>
       api.results.listResults(
         { filter: toFilter(selection, nowMs), pageSize, pageToken: pageParam },
-        { signal },
+        { signal, timeoutMs },
       ),
     getNextPageParam: (page) => page.nextPageToken || undefined,
   });
