@@ -30,8 +30,14 @@ export function ResultTable({ selection, nowMs, pages, results, onOpen, onRefres
       {results.length === 0 ? (
         <Text>{t('noResults')}</Text>
       ) : (
-        <Table.ScrollContainer minWidth={800}>
-          <Table striped highlightOnHover stickyHeader>
+        <Table.ScrollContainer
+          type="native"
+          minWidth={800}
+          tabIndex={0}
+          role="region"
+          aria-label={t('views.table')}
+        >
+          <Table striped highlightOnHover>
             <Table.Thead>
               <Table.Tr>
                 {(['time', 'job', 'part', 'class', 'state', 'values', 'reason'] as const).map(

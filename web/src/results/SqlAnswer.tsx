@@ -15,7 +15,15 @@ export function SqlAnswer({ answer, ms }: { answer: QueryResultsResponse; ms: nu
         {t('rows', { count: rows.length, ms })}
       </Text>
       {answer.truncated && <Alert color="yellow">{t('truncated', { count: rows.length })}</Alert>}
-      <Table.ScrollContainer minWidth={400} maxHeight={480} scrollAreaProps={{ tabIndex: 0 }}>
+      <Table.ScrollContainer
+        type="native"
+        minWidth={400}
+        mah={480}
+        style={{ overflowY: 'auto' }}
+        tabIndex={0}
+        role="region"
+        aria-label={t('answer')}
+      >
         <Table striped stickyHeader withColumnBorders aria-label={t('answer')}>
           <Table.Thead>
             <Table.Tr>
