@@ -45,6 +45,7 @@ class ClientStream {
   void CloseGently();
   // Nothing but Wake and its like may be called after it.
   void Close();
+  int fd() const { return fd_; }
 
   enum class Event { kWoken, kGone, kTimeout };
   // Until Wake, until the client has closed its side or was cut off, or the deadline.

@@ -69,6 +69,7 @@ void HttpConnection::Run() {
   } catch (const std::exception& error) {  // no memory
     LogWarn("http", Str("lost the connection of ", client_address_, ": ", error.what()));
   }
+  shared_.acceptor->Forget(stream_.fd());
   stream_.Close();
   done_ = true;
 }

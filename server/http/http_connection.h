@@ -14,6 +14,7 @@
 #include "server/http/web_call.h"
 #include "server/http/web_root.h"
 #include "server/rpc/dispatcher.h"
+#include "server/transport/acceptor.h"
 
 struct ssl_ctx_st;
 
@@ -38,6 +39,7 @@ struct HttpShared {
   const HttpLimits& limits;
   const WebRoot& root;
   Dispatcher& dispatcher;
+  Acceptor* acceptor = nullptr;  // whence the connections come
   std::atomic<size_t> request_memory{0};
 };
 

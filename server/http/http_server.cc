@@ -25,6 +25,7 @@ Result<std::unique_ptr<HttpServer>> HttpServer::Start(const HttpServerOptions& o
     VS_ASSIGN_OR_RETURN(server->tls_, TlsContext::Load(*options.certificate));
   }
   VS_ASSIGN_OR_RETURN(server->acceptor_, Acceptor::Listen(options.acceptor));
+  server->shared_.acceptor = server->acceptor_.get();
   return server;
 }
 

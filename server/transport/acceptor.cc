@@ -137,6 +137,11 @@ void Acceptor::Start(Take take) {
   thread_ = std::jthread([this] { Run(); });
 }
 
+void Acceptor::Forget(int fd) {
+  MutexLock lock(mutex_);
+  connections_.erase(fd);
+}
+
 void Acceptor::Stop() {
   if (!thread_.joinable()) return;
   const uint64_t one = 1;

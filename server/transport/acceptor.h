@@ -38,6 +38,9 @@ class Acceptor {
   // `address`: of the client, no port.
   using Take = std::function<void(int fd, const std::string& address)>;
   void Start(Take take);
+  // Whoever closes a connection may say so just before: it counts no longer then. The others are
+  // found out.
+  void Forget(int fd) VS_EXCLUDES(mutex_);
   // Accepts no more; `take` is not called any more when it returns.
   void Stop();
 
@@ -51,8 +54,8 @@ class Acceptor {
   Stats GetStats() const;
 
  private:
-  // Whoever took a connection closes its descriptor without telling us. The inode number of a
-  // socket is unique among those open, so it tells whether the descriptor is still that connection.
+  // gRPC closes descriptors without telling us. The inode number of a socket is unique among those
+  // open, so it tells whether the descriptor is still that connection.
   struct Connection {
     ino_t inode = 0;
     std::string address;
