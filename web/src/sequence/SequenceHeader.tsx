@@ -32,7 +32,8 @@ export function SequenceHeader({ id, description, state, scene }: Props) {
     <>
       <Group gap="md" wrap="nowrap">
         <Title order={1}>{id}</Title>
-        <Badge color={color} variant="outline" data-testid="run-state" miw={90}>
+        {/* The border has the colour; green or yellow text could not be read on white. */}
+        <Badge color={color} variant="outline" c="var(--mantine-color-text)" data-testid="run-state" miw={90}>
           {t(`state.${name}`)}
         </Badge>
         <StartStop id={id} state={state} />
