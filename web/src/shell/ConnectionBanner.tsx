@@ -1,4 +1,4 @@
-import { Alert, Loader } from '@mantine/core';
+import { Group, Loader, Text } from '@mantine/core';
 import { useTranslation } from 'react-i18next';
 import { useConnection } from '../api/connection';
 
@@ -9,20 +9,23 @@ export function ConnectionBanner() {
   return (
     <div role="status" aria-live="assertive">
       {lost && (
-        <Alert
-          color="orange"
-          variant="filled"
-          radius={0}
-          py={6}
-          icon={<Loader size={16} color="currentColor" />}
+        <Group
           pos="fixed"
           bottom={0}
           left={0}
           right={0}
+          px="md"
+          py="xs"
+          gap="sm"
+          bg="#ffc078"
+          c="#241502"
           style={{ zIndex: 500 }}
         >
-          {t('connectionLost')}
-        </Alert>
+          <Loader size={16} color="#241502" />
+          <Text size="sm" fw={600}>
+            {t('connectionLost')}
+          </Text>
+        </Group>
       )}
     </div>
   );
