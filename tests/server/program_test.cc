@@ -164,6 +164,20 @@ TEST_F(ProgramTest, PrintsTheFingerprintAndTheOneTimePassword) {
   EXPECT_THAT(server->ErrorOutput(), Not(HasSubstr(secret)));
 }
 
+TEST_F(ProgramTest, SaysWhereThePageIsUnlessThereIsNone) {
+  Write(kPlain);
+  {
+    const auto server = Start(Command({"--web-root", folder_.path().string()}));
+    EXPECT_THAT(server->WaitForLine("the page is at").value_or(""),
+                ContainsRegex("the page is at http://127\\.0\\.0\\.1:[0-9]+/$"));
+  }
+  const auto without = Start(Command({"--no-web"}));
+  without->Signal(SIGTERM);
+  EXPECT_EQ(without->WaitForExit(), 0);
+  EXPECT_THAT(without->Output(), Not(HasSubstr("the page")));
+  EXPECT_THAT(RunToEnd({"--web-root", "/nowhere"}).error_output, HasSubstr("/nowhere"));
+}
+
 TEST_F(ProgramTest, TwoServersDoNotShareTheirData) {
   Write(kPlain);
   const auto first = Start(Command());

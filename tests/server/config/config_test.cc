@@ -47,6 +47,17 @@ TEST(Config, NeedsOnlyAFolderAndAnAddress) {
   EXPECT_EQ(config->limits().connections(), 1024);
 }
 
+TEST(Config, ThePageIsBesideTheApiUnlessItSaysOtherwise) {
+  const auto page = [](const std::string& listen, const std::string& more = "") {
+    return Parse("data_dir: \"d\" listen_address: \"" + listen + "\" " + more)->web_address();
+  };
+  EXPECT_EQ(page("0.0.0.0:50051"), "0.0.0.0:8443");
+  EXPECT_EQ(page("[::1]:50051"), "[::1]:8443");
+  EXPECT_EQ(page("localhost:0"), "localhost:0");
+  EXPECT_EQ(page("127.0.0.1:50051", "web_address: \"127.0.0.1:443\""), "127.0.0.1:443");
+  EXPECT_EQ(page("127.0.0.1:50051", "web_address: \"\""), "");
+}
+
 TEST(Config, TakesCommentsAndCameras) {
   const Result<config::ServerConfig> config = Parse(
       "# The cell at door 3.\n"
