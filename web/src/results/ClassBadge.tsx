@@ -12,7 +12,7 @@ export function ClassBadge({ resultClass }: { resultClass: ResultClass }) {
   const { t } = useTranslation('results');
   const word = classWords[resultClass];
   return (
-    <Badge variant="filled" color={colors[word]} radius="sm">
+    <Badge variant="filled" color={colors[word]} radius="sm" miw="max-content">
       {t(`classes.${word}`)}
     </Badge>
   );

@@ -86,6 +86,9 @@ function NewerLine({ selection, nowMs, results, onRefresh }: NewerProps) {
   );
 }
 
+// Names of files have no place to break.
+const wrapAnywhere = { overflowWrap: 'anywhere' } as const;
+
 function Row({ result, onOpen }: { result: Result; onOpen: (resultId: string) => void }) {
   const { t, i18n } = useTranslation('results');
   const time = localText(result.creationTime, i18n.language);
@@ -109,14 +112,14 @@ function Row({ result, onOpen }: { result: Result; onOpen: (resultId: string) =>
         <ClassBadge resultClass={result.resultClass} />
       </Table.Td>
       <Table.Td>{state && t(`states.${state}`)}</Table.Td>
-      <Table.Td>
+      <Table.Td style={wrapAnywhere}>
         {result.fields
           .slice(0, 4)
           .map((field) => `${field.name} ${valueText(field.value)}`)
           .join(', ')}
         {result.fields.length > 4 && ' …'}
       </Table.Td>
-      <Table.Td>{result.reason}</Table.Td>
+      <Table.Td style={wrapAnywhere}>{result.reason}</Table.Td>
     </Table.Tr>
   );
 }

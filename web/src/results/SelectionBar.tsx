@@ -98,7 +98,7 @@ function WordInput({ label, value, onChange, choices = [] }: WordProps) {
   };
   return (
     <Autocomplete
-      w={160}
+      w={140}
       label={label}
       data={choices}
       value={draft}
