@@ -13,6 +13,7 @@ export interface Surroundings {
 }
 
 export interface LiveOptions<T> {
+  /** Without a window, it follows how quick the page is. */
   wanted: Wanted;
   decode(item: StreamItem): Promise<T>;
   draw(picture: T): void;
@@ -45,7 +46,8 @@ export class LiveStream<T> {
   private undecoded: { item: StreamItem; received_ms: number } | undefined;
   private decoding = false;
   private waiting: Waiting<T> | undefined;
-  private turnaround_ms = 0;
+  // Of the last few pictures, from receipt to drawn; undefined before the first.
+  private turnaround_ms: number | undefined;
   private notice = '';
   private ended = false;
 
@@ -90,7 +92,7 @@ export class LiveStream<T> {
         this.offer({ item, received_ms, picture });
       } catch (error) {
         this.passOver(item);
-        this.setNotice(error instanceof Error ? error.message : String(error));
+        this.setNotice(textOf(error));
       }
     }
     this.decoding = false;
@@ -114,7 +116,14 @@ export class LiveStream<T> {
     const { waiting } = this;
     if (!waiting || this.ended) return;
     this.waiting = undefined;
-    this.options.draw(waiting.picture);
+    try {
+      this.options.draw(waiting.picture);
+    } catch (error) {
+      // What is not acknowledged would hold its place in the window for ever.
+      this.passOver(waiting.item);
+      this.setNotice(textOf(error));
+      return;
+    }
     const now_ms = this.surroundings.now_ms();
     this.statistics.onDrawn(now_ms, this.latency_ms(waiting.item));
     this.subscribed.acknowledge(waiting.item.seq);
@@ -134,7 +143,9 @@ export class LiveStream<T> {
   }
 
   private adapt(turnaround_ms: number): void {
-    this.turnaround_ms += 0.3 * (turnaround_ms - this.turnaround_ms);
+    if (this.options.wanted.window !== undefined) return;
+    const before_ms = this.turnaround_ms ?? turnaround_ms;
+    this.turnaround_ms = before_ms + 0.3 * (turnaround_ms - before_ms);
     const window =
       this.turnaround_ms > SLOW_MS ? 1
       : this.turnaround_ms < QUICK_MS ? QUICK_WINDOW
@@ -150,3 +161,5 @@ export class LiveStream<T> {
     this.options.onNotice?.(text);
   }
 }
+
+const textOf = (error: unknown) => (error instanceof Error ? error.message : String(error));
