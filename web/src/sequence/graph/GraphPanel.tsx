@@ -1,7 +1,7 @@
 import '@xyflow/react/dist/style.css';
 import { useComputedColorScheme } from '@mantine/core';
 import { Background, Controls, type Edge, ReactFlow } from '@xyflow/react';
-import { useMemo } from 'react';
+import { type KeyboardEvent, useMemo } from 'react';
 import { useTranslation } from 'react-i18next';
 import type { BlockType, SequenceSpec, SequenceState } from '../../gen/visionserver/v1/sequence_pb';
 import type { Output } from '../outputs';
@@ -15,7 +15,7 @@ interface Props {
   blockTypes: BlockType[];
   outputs: Output[];
   state: SequenceState | undefined;
-  /** A block was chosen by a click or by Enter. */
+  /** A block was chosen by a click, Enter or the space bar. */
   onChoose: (block: string) => void;
 }
 
@@ -51,7 +51,10 @@ export default function GraphPanel({ spec, blockTypes, outputs, state, onChoose 
           edgesFocusable={false}
           onlyRenderVisibleElements
           onNodeClick={(_, node) => onChoose(node.id)}
-          onSelectionChange={({ nodes: [chosen] }) => chosen && onChoose(chosen.id)}
+          onKeyDown={(event) => {
+            const block = chosenBy(event);
+            if (block !== undefined) onChoose(block);
+          }}
         >
           <Background />
           <Controls showInteractive={false} />
@@ -59,6 +62,13 @@ export default function GraphPanel({ spec, blockTypes, outputs, state, onChoose 
       </BlockStates>
     </div>
   );
+}
+
+/** The focused block on which Enter or the space bar was pressed. */
+function chosenBy({ key, target }: KeyboardEvent): string | undefined {
+  if (key !== 'Enter' && key !== ' ') return undefined;
+  const isBlock = target instanceof HTMLElement && target.matches('.react-flow__node');
+  return isBlock ? target.dataset.id : undefined;
 }
 
 function nodeOf(block: GraphBlock): BlockNodeType {
