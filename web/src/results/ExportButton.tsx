@@ -1,5 +1,5 @@
 import { Button, Group, Text } from '@mantine/core';
-import { useRef, useState } from 'react';
+import { useEffect, useRef, useState } from 'react';
 import { useTranslation } from 'react-i18next';
 
 import { api } from '../api/clients';
@@ -13,6 +13,8 @@ export function ExportButton({ selection }: { selection: Selection }) {
   const [bytes, setBytes] = useState<number>();
   const [failure, setFailure] = useState('');
   const running = useRef<AbortController>(null);
+  // Whoever leaves the page waits for no answer.
+  useEffect(() => () => running.current?.abort(), []);
 
   const start = async () => {
     const controller = new AbortController();

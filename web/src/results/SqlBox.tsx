@@ -1,5 +1,5 @@
 import { Button, Group, NativeSelect, NumberInput, Stack, Textarea } from '@mantine/core';
-import { useRef, useState } from 'react';
+import { useEffect, useRef, useState } from 'react';
 import { useTranslation } from 'react-i18next';
 
 import { api } from '../api/clients';
@@ -23,6 +23,8 @@ export function SqlBox() {
   const [outcome, setOutcome] = useState<Outcome>();
   const [busy, setBusy] = useState(false);
   const running = useRef<AbortController>(null);
+  // Whoever leaves the page waits for no answer.
+  useEffect(() => () => running.current?.abort(), []);
 
   const run = async () => {
     if (busy) return;
