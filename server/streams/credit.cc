@@ -10,6 +10,12 @@ std::optional<int64_t> Credit::AllowedFrom() const {
   return due_ns_;
 }
 
+void Credit::Continue(const Credit& before) {
+  sent_ = before.sent_;
+  // Nothing was sent yet, or the last item's time and the new period.
+  due_ns_ = before.due_ns_ == 0 ? 0 : before.due_ns_ - before.period_ns_ + period_ns_;
+}
+
 void Credit::OnSent(uint64_t seq, int64_t now_ns) {
   sent_.push_back({seq, now_ns});
   // Keeps the pace when an item comes a little late, but never makes up for a pause.

@@ -21,6 +21,9 @@ class Credit {
   // When only the rate forbids to send: until then. Nothing while acknowledgements are missing.
   std::optional<int64_t> AllowedFrom() const;
 
+  // Goes on where `before` was: what it sent is still under way, and the pace is counted from then.
+  void Continue(const Credit& before);
+
   void OnSent(uint64_t seq, int64_t now_ns);
   // The client has dealt with this item and all earlier ones. What was never sent changes nothing.
   void OnAck(uint64_t seq);

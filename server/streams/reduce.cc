@@ -43,7 +43,7 @@ Image<Pixel> Nearest(const Image<Pixel>& image, int step, BufferPool& pool) {
   for (int y = 0; y < result.height(); ++y) {
     const Pixel* in = image.Row(y * step);
     Pixel* out = result.Row(y);
-    for (int x = 0; x < result.width(); ++x) out[x] = in[x * step];
+    for (int x = 0; x < result.width(); ++x, in += step) out[x] = *in;
   }
   return result;
 }

@@ -158,10 +158,12 @@ Status Subscriber::Update(const std::vector<pb::Subscription>& set,
           Str("one stream takes at most ", kMaxSubscriptions, " subscriptions"));
     }
     for (auto& [id, entry] : made) {
-      // Another codec or rate of the same stream: what it has is not sent again.
+      // Another codec or rate of the same stream: what it has is not sent again, and what it has
+      // not acknowledged still counts.
       const auto old = entries_.find(id);
       if (old != entries_.end() && old->second.channel == entry.channel) {
         entry.want.after_seq = entry.last_seq = old->second.last_seq;
+        entry.credit.Continue(old->second.credit);
       }
       entries_.insert_or_assign(id, std::move(entry));
     }

@@ -44,6 +44,22 @@ TEST(Credit, AcknowledgingWhatWasNeverSentBuysNothing) {
   EXPECT_FALSE(credit.Allows(0));
 }
 
+TEST(Credit, GoesOnWhereAnotherOneWas) {
+  Credit slow(2, 1);  // every 1000 ms
+  slow.OnSent(1, 5000 * kMs);
+  slow.OnSent(2, 6000 * kMs);
+  Credit quick(2, 10);
+  quick.Continue(slow);
+  EXPECT_EQ(5000 * kMs, quick.UnacknowledgedSince());
+  EXPECT_FALSE(quick.Allows(9000 * kMs)) << "both are still under way";
+  quick.OnAck(1);
+  EXPECT_FALSE(quick.Allows(6099 * kMs));
+  EXPECT_TRUE(quick.Allows(6100 * kMs)) << "100 ms after the last one";
+  Credit fresh(2, 1);
+  fresh.Continue(Credit(2, 10));
+  EXPECT_TRUE(fresh.Allows(0));
+}
+
 TEST(Credit, TheRateIsKeptAlsoWhenItemsComeLate) {
   Credit credit(16, 10);  // every 100 ms
   credit.OnSent(1, 1000 * kMs);

@@ -269,6 +269,18 @@ TEST_F(SubscriberTest, ChangingASubscriptionSendsNothingTwice) {
   EXPECT_TRUE(client_.HasNothing());
 }
 
+TEST_F(SubscriberTest, ChangingASubscriptionBuysNoCredit) {
+  const auto topic = Open("demo/depth", "disparity_map");
+  ASSERT_TRUE(client_.Subscribe({Wish(1, "demo/depth", 1)}).ok());
+  PublishMap(*topic, 1);
+  const pb::StreamItem first = client_.Next();
+  PublishMap(*topic, 2);
+  ASSERT_TRUE(client_.Subscribe({Wish(1, "demo/depth", 1)}).ok());
+  EXPECT_TRUE(client_.HasNothing());
+  client_.Ack(first);
+  EXPECT_EQ(2u, client_.Next().seq());
+}
+
 TEST_F(SubscriberTest, WhoNeverAcknowledgesLosesTheStream) {
   const auto topic = Open("demo/count", "integer");
   topic->Publish(Value(int64_t{1}), test::Journey(1), 1);
