@@ -139,9 +139,10 @@ bool ClientStream::WriteTls(std::span<const std::string_view> pieces, const Dead
       size_t skip = offset;
       for (size_t i = 0; i < pieces.size() && size < gathered.size(); ++i) {
         const std::string_view piece = pieces[i].substr(skip, gathered.size() - size);
+        skip = 0;
+        if (piece.empty()) continue;  // perhaps without an address
         std::memcpy(gathered.data() + size, piece.data(), piece.size());
         size += piece.size();
-        skip = 0;
       }
       record = gathered.data();
     }
