@@ -5,13 +5,31 @@ import { assertAccessible, assertNoFaults, Browser, logIn, picture, until, userF
 import { liveSequence } from './support/scene.mjs';
 import { role, TestServer } from './support/server.mjs';
 
+const drawn = (page, canvas) =>
+  until(`a picture on ${canvas}`, () => page.getByTestId(canvas).getAttribute('data-frame'));
+
 const pages = {
   overview: { place: '/', ready: (page) => page.getByText('live').first().waitFor() },
   sequence: {
     place: '/sequence/live',
     ready: async (page) => {
-      const map = page.getByTestId('view-map');
-      await until('a picture', () => map.getAttribute('data-frame'));
+      await drawn(page, 'view-map');
+      await drawn(page, 'view-picture');
+      await page.getByRole('slider').first().waitFor();
+    },
+  },
+  sequence_cloud: {
+    place: '/sequence/live',
+    ready: async (page) => {
+      await page.getByRole('tab', { name: 'Point cloud' }).click();
+      await drawn(page, 'view-cloud');
+    },
+  },
+  sequence_blocks: {
+    place: '/sequence/live',
+    ready: async (page) => {
+      await page.getByRole('tab', { name: 'Blocks' }).click();
+      await drawn(page, 'preview-match.disparity');
     },
   },
   results: {
