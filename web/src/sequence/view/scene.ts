@@ -40,10 +40,12 @@ export class Scene {
 
   show(frame: Frame, display: Display, now_ms: number): void {
     if (frame.kind === 'picture') {
-      this.picture?.bitmap.close();
+      const before = this.picture;
       this.picture = frame;
       if (!this.map) this.viewport.setPicture(frame);
       this.pictureChanged.emit();
+      // Only now: a closed picture has no size that a view could compare.
+      before?.bitmap.close();
       return;
     }
     this.map = frame;

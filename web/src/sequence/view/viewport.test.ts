@@ -1,7 +1,7 @@
 // @vitest-environment node
 import { describe, expect, it } from 'vitest';
 import { roundest, ticks } from './ticks';
-import { Viewport } from './viewport';
+import { type Size, Viewport } from './viewport';
 
 function viewport() {
   const view = new Viewport();
@@ -65,6 +65,12 @@ describe('Viewport', () => {
     expect(y).toBeGreaterThanOrEqual(0);
     expect(x).toBeLessThan(320);
     expect(y).toBeLessThan(320);
+  });
+
+  it('keeps the size of a picture and not the picture', () => {
+    const view = new Viewport();
+    view.setPicture({ width: 2, height: 3, stored: new Uint16Array(6) } as Size);
+    expect(view.pictureSize).toEqual({ width: 2, height: 3 });
   });
 
   it('begins anew with a picture of another size', () => {

@@ -33,7 +33,8 @@ export class Viewport {
 
   setPicture(size: Size): void {
     if (size.width === this.picture.width && size.height === this.picture.height) return;
-    this.picture = size;
+    // Not `size` itself, which may be a frame with all its pixels.
+    this.picture = { width: size.width, height: size.height };
     this.fit();
   }
 
