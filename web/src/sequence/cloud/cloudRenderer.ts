@@ -49,6 +49,9 @@ export class CloudRenderer {
     new LineBasicMaterial({ depthTest: false, color: '#ff4fd8' }),
   );
   private readonly endings: (() => void)[];
+  /** Of the two marks, for both that draw them. */
+  private readonly places = new Float32BufferAttribute(new Float32Array(6), 3);
+  private ended = false;
   private step = 1;
   private placed = false;
   private asked = false;
@@ -67,6 +70,10 @@ export class CloudRenderer {
     for (const object of [this.points, this.ends, this.line]) object.frustumCulled = false;
     this.ends.renderOrder = this.line.renderOrder = 1;
     this.world.add(this.points, this.axes, this.ends, this.line);
+    for (const { geometry } of [this.ends, this.line]) {
+      geometry.setAttribute('position', this.places);
+      geometry.setDrawRange(0, 0);
+    }
     this.endings = [
       scene.mapChanged.on(() => this.showMap()),
       scene.pictureChanged.on(() => this.showPicture()),
@@ -77,9 +84,16 @@ export class CloudRenderer {
   }
 
   end(): void {
+    this.ended = true;
     for (const end of this.endings) end();
     this.controls.dispose();
     this.material.disposeAll();
+    this.axes.dispose();
+    for (const { geometry, material } of [this.ends, this.line]) {
+      geometry.dispose();
+      material.dispose();
+    }
+    this.points.geometry.dispose();
     this.renderer.dispose();
   }
 
@@ -156,14 +170,13 @@ export class CloudRenderer {
   }
 
   private placeMarks(map: MapFrame): void {
-    const places = this.scene.marks.flatMap(({ x, y }) => {
-      const point = pointOf(map, x, y);
-      return point ? [point.x_m, point.y_m, point.z_m] : [];
-    });
-    const setPlaces = (geometry: BufferGeometry, values: number[]) =>
-      geometry.setAttribute('position', new Float32BufferAttribute(values, 3));
-    setPlaces(this.ends.geometry, places);
-    setPlaces(this.line.geometry, places.length === 6 ? places : []);
+    const points = this.scene.marks
+      .map(({ x, y }) => pointOf(map, x, y))
+      .filter((point) => point !== undefined);
+    points.forEach(({ x_m, y_m, z_m }, i) => this.places.setXYZ(i, x_m, y_m, z_m));
+    if (points.length > 0) this.places.needsUpdate = true;
+    this.ends.geometry.setDrawRange(0, points.length);
+    this.line.geometry.setDrawRange(0, points.length === 2 ? 2 : 0);
   }
 
   /** Colours by height run over the heights that there are, but for 2 % at either end. */
@@ -196,6 +209,7 @@ export class CloudRenderer {
   }
 
   private render(): void {
+    if (this.ended) return;
     this.renderer.render(this.world, this.camera);
   }
 }
