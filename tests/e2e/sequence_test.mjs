@@ -1,0 +1,145 @@
+// What one does on the page of a sequence: save, measure, look at the blocks, set a parameter without
+// a mouse. Held against the exact truth of a still scene and against what the server has.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { inflateSync } from 'node:zlib';
+
+import { assertNoFaults, Browser, logIn, until } from './support/browser.mjs';
+import { waitForNextFrame } from './support/canvas.mjs';
+import { stillSequence, writeScene } from './support/scene.mjs';
+import { TestServer } from './support/server.mjs';
+
+let server;
+let browser;
+let page;
+let scene;
+let sequence;
+before(async () => {
+  server = new TestServer();
+  scene = writeScene(server.pictures);
+  sequence = stillSequence(server.pictures, scene);
+  server.store('still', sequence);
+  await server.start();
+  await server.setUp();
+  browser = await Browser.launch();
+  page = await browser.newPage({ viewport: { width: 1600, height: 900 } });
+  await logIn(page, server, 'admin', '/sequence/still');
+  await waitForNextFrame(page);
+});
+after(async () => {
+  await browser?.close();
+  await server?.end();
+});
+
+/** Pixels on surfaces, away from edges, where a pixel more or less is another thing; spread evenly. */
+function places(count) {
+  const flat = [];
+  for (let y = 8; y < scene.height - 8; y += 2) {
+    for (let x = 8; x < scene.width - 8; x += 2) {
+      const depth_m = scene.depth_m(x, y);
+      const near = [[-6, 0], [6, 0], [0, -6], [0, 6]].map(([dx, dy]) => scene.depth_m(x + dx, y + dy));
+      if (near.every((other_m) => Math.abs(other_m - depth_m) < 0.01 * depth_m)) flat.push({ x, y, depth_m });
+    }
+  }
+  return Array.from({ length: count }, (_, i) => flat[Math.floor(((i + 0.5) / count) * flat.length)]);
+}
+
+/** What the menu's entry gives to download. */
+async function save(entry) {
+  await page.getByRole('button', { name: 'Save', exact: true }).click();
+  const download = page.waitForEvent('download');
+  await page.getByRole('menuitem', { name: entry }).click();
+  return readFileSync(await (await download).path());
+}
+
+/** A 16-bit grey PNG without filters, as the page writes it. */
+function decodePng16(file) {
+  const data = [];
+  let header;
+  for (let at = 8; at < file.length; at += file.readUInt32BE(at) + 12) {
+    const content = file.subarray(at + 8, at + 8 + file.readUInt32BE(at));
+    const type = file.toString('latin1', at + 4, at + 8);
+    if (type === 'IHDR') header = content;
+    if (type === 'IDAT') data.push(content);
+  }
+  const [width, height] = [header.readUInt32BE(0), header.readUInt32BE(4)];
+  assert.deepEqual([header[8], header[9]], [16, 0], 'bits, grey');
+  const rows = inflateSync(Buffer.concat(data));
+  const stride = 2 * width + 1;
+  assert.equal(rows.length, height * stride);
+  for (let y = 0; y < height; ++y) assert.equal(rows[y * stride], 0, 'the filter of a row');
+  return { width, height, at: (x, y) => rows.readUInt16BE(y * stride + 1 + 2 * x) };
+}
+
+test('the saved depth is the truth within 2 %, in millimetres', async () => {
+  const depth = decodePng16(await save(/^Depth/));
+  assert.deepEqual([depth.width, depth.height], [scene.width, scene.height]);
+  for (const { x, y, depth_m } of places(9)) {
+    const saved_m = depth.at(x, y) / 1000;
+    console.log(`(${x}, ${y}): ${saved_m} m, true ${depth_m.toFixed(4)} m`);
+    assert.ok(Math.abs(saved_m - depth_m) < 0.02 * depth_m);
+  }
+});
+
+test('the saved cloud holds as many points as its header says', async () => {
+  const file = await save(/^Point cloud/);
+  const end = 'end_header\n';
+  const body = file.indexOf(end) + end.length;
+  const header = file.toString('latin1', 0, body);
+  const count = Number(header.match(/element vertex (\d+)/)[1]);
+  assert.equal(header.match(/^property float [xyz]$/gm).length, 3);
+  assert.equal(file.length - body, count * 12);
+  assert.ok(count > 50_000, `${count} points`);
+});
+
+test('two clicks measure the true distance within 2 %', async () => {
+  const map = page.getByTestId('view-map');
+  const ends = [places(9)[2], places(9)[6]];
+  await page.getByRole('button', { name: 'Measure', exact: true }).click();
+  await page.getByTestId('distance').waitFor();
+  const box = await map.boundingBox();
+  const { left, top, scale } = await map.evaluate(({ dataset }) => ({ ...dataset }));
+  for (const { x, y } of ends) {
+    await page.mouse.click(box.x + Number(left) + (x + 0.5) * scale, box.y + Number(top) + (y + 0.5) * scale);
+  }
+  const [a, b] = ends.map(({ x, y, depth_m }) =>
+    [(x - scene.center_x_px) / scene.focal_px, (y - scene.center_y_px) / scene.focal_px, 1].map((of) => of * depth_m),
+  );
+  const true_m = Math.hypot(...a.map((value, i) => value - b[i]));
+  const measured_m = await until('a distance', async () =>
+    Number.parseFloat(await page.getByTestId('distance').textContent()),
+  );
+  console.log(`${measured_m} m between the clicks, true ${true_m.toFixed(4)} m`);
+  assert.ok(Math.abs(measured_m - true_m) < 0.02 * true_m);
+});
+
+test('the blocks show times and pictures, which end with their tab', async () => {
+  const subscribers = async () =>
+    (await server.admin.streams.listStreams({})).streams.find(({ stream }) => stream === 'still/depth').subscribers;
+  await page.getByRole('tab', { name: 'Blocks' }).click();
+  for (const output of ['cameras.pair', 'match.disparity']) {
+    await until(`a picture of ${output}`, () => page.getByTestId(`preview-${output}`).getAttribute('data-frame'));
+  }
+  for (const { id } of sequence.blocks) {
+    assert.match(await page.getByTestId(`time-${id}`).textContent(), /^\d+(\.\d+)? ms$/);
+  }
+  await until('the large depth to end', async () => (await subscribers()) === 1);
+  await page.getByRole('tab', { name: 'Pictures' }).click();
+  await waitForNextFrame(page);
+  await until('the preview to end', async () => (await subscribers()) === 1);
+});
+
+test('a parameter is set with the keyboard alone', async () => {
+  const confirmed = page.getByTestId('parameter-match.num_disparities').getByRole('textbox');
+  const before = Number(await confirmed.inputValue());
+  const focused = () => page.evaluate(() => document.activeElement.getAttribute('aria-label'));
+  for (let i = 0; i < 300 && (await focused()) !== 'num_disparities'; ++i) await page.keyboard.press('Tab');
+  assert.equal(await focused(), 'num_disparities');
+  await page.keyboard.press('ArrowLeft');
+  await until('the confirmed value', async () => Number(await confirmed.inputValue()) === before - 1);
+  const paths = ['match.num_disparities'];
+  const { values } = await server.admin.parameters.getParameters({ sequence: 'still', paths });
+  assert.equal(values[0].value.kind.value, BigInt(before - 1));
+  assertNoFaults(page);
+});
