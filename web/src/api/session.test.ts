@@ -20,6 +20,14 @@ describe('the session of a tab', () => {
     expect(reloaded.useSession.getState().login).toEqual(anna);
   });
 
+  it('begins anew where what was stored cannot be read', async () => {
+    sessionStorage.setItem('visionserver.session', '{"token": "sec');
+    vi.resetModules();
+    const reloaded = await import('./session');
+    expect(reloaded.useSession.getState().login).toBeNull();
+    expect(sessionStorage.getItem('visionserver.session')).toBeNull();
+  });
+
   it('keeps who it was when it has expired, until the next login', () => {
     useSession.getState().setLogin(anna);
     useSession.getState().setExpired();

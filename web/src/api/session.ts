@@ -23,9 +23,14 @@ interface SessionState {
   clear: () => void;
 }
 
+/** Null also where something else has written there: the user logs in again. */
 function load(): Login | null {
-  const text = sessionStorage.getItem(kStorageKey);
-  return text === null ? null : (JSON.parse(text) as Login);
+  try {
+    return JSON.parse(sessionStorage.getItem(kStorageKey) ?? 'null') as Login | null;
+  } catch {
+    sessionStorage.removeItem(kStorageKey);
+    return null;
+  }
 }
 
 /** The session of this tab. It survives a reload (sessionStorage) but not the closing of the tab. */
