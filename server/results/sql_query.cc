@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "engine/base/str.h"
+#include "server/storage/sqlite_memory.h"
 
 namespace vs {
 namespace {
@@ -121,40 +122,39 @@ Result<Statement> PrepareOne(Database& database, const std::string& sql) {
   return statement;
 }
 
-}  // namespace
-
-// What a running statement is held to.
-struct SqlQuery::Watch {
-  const Clock& clock;
-  const SqlLimits& limits;
-  const std::function<bool()>& cancelled;
-  int64_t end_ns;
-  int64_t memory_before = INT64_MAX;  // what others use while it waits for its turn does not count
-  Status stopped_because{};
-
-  // Not zero: SQLite interrupts the statement.
-  static int Look(void* self) {
-    auto& watch = *static_cast<Watch*>(self);
-    watch.stopped_because = watch.Judge();
-    return watch.stopped_because.ok() ? 0 : 1;
+Result<SqlTable> Read(Database& database, const std::string& sql,
+                      const std::vector<SqlValue>& arguments, const SqlLimits& limits) {
+  VS_ASSIGN_OR_RETURN(Statement query, PrepareOne(database, sql));
+  const int wanted = sqlite3_bind_parameter_count(query.handle());
+  if (wanted != static_cast<int>(arguments.size())) {
+    return InvalidArgument(
+        Str("the query takes ", wanted, " arguments, ", arguments.size(), " were given"));
   }
-
-  Status Judge() const {
-    if (clock.MonotonicNs() >= end_ns) {
-      return DeadlineExceeded(Str("the query took longer than ", limits.timeout.count(),
-                                  " ms: ask for less, or for a longer timeout"));
+  Bind(arguments, query);
+  SqlTable table;
+  table.columns = ColumnNames(query);
+  size_t bytes = 0;
+  while (true) {
+    const Result<bool> row = query.Step();
+    if (!row.has_value()) return ForClient(database, row.error());
+    if (!*row) return table;
+    if (table.rows.size() == limits.max_rows) {
+      table.truncated = true;
+      return table;
     }
-    if (sqlite3_memory_used() - memory_before > static_cast<int64_t>(limits.max_work_bytes)) {
-      return ResourceExhausted(Str("the query needs more than ", limits.max_work_bytes >> 20,
-                                   " MB of memory: sort or group less"));
+    std::vector<SqlValue>& cells = table.rows.emplace_back();
+    for (size_t i = 0; i < table.columns.size(); ++i) {
+      cells.push_back(ReadCell(query, static_cast<int>(i)));
+      bytes += BytesOf(cells.back());
     }
-    if (cancelled()) return Cancelled("the query was cancelled");
-    return Status();
+    if (bytes > limits.max_answer_bytes) {
+      return ResourceExhausted(Str("the answer is larger than ", limits.max_answer_bytes >> 10,
+                                   " kB: select fewer columns or rows, or export as CSV"));
+    }
   }
-};
+}
 
-Result<std::unique_ptr<SqlQuery>> SqlQuery::Open(const std::filesystem::path& file,
-                                                 const Clock& clock) {
+Result<Database> OpenForStrangers(const std::filesystem::path& file) {
   VS_ASSIGN_OR_RETURN(Database database, Database::Open(file, Database::Access::kReadOnly));
   database.SetBusyTimeout(std::chrono::seconds(1));
   VS_RETURN_IF_ERROR(database.Execute(
@@ -172,87 +172,104 @@ Result<std::unique_ptr<SqlQuery>> SqlQuery::Open(const std::filesystem::path& fi
   sqlite3_limit(connection, SQLITE_LIMIT_COMPOUND_SELECT, 50);
   sqlite3_limit(connection, SQLITE_LIMIT_VDBE_OP, 100'000);
   sqlite3_set_authorizer(connection, Authorize, nullptr);
-  return std::unique_ptr<SqlQuery>(new SqlQuery(std::move(database), clock));
+  return database;
 }
 
-SqlQuery::SqlQuery(Database database, const Clock& clock)
-    : clock_(clock), database_(std::move(database)) {}
+}  // namespace
+
+// What a running statement is held to.
+struct SqlQuery::Watch {
+  const Clock& clock;
+  const SqlLimits& limits;
+  const std::function<bool()>& cancelled;
+  int64_t end_ns;
+  int64_t memory_before = INT64_MAX;  // what is used while it waits for its turn does not count
+  Status stopped_because{};
+
+  // Not zero: SQLite interrupts the statement.
+  static int Look(void* self) {
+    auto& watch = *static_cast<Watch*>(self);
+    watch.stopped_because = watch.Judge();
+    return watch.stopped_because.ok() ? 0 : 1;
+  }
+
+  Status Judge() const {
+    if (clock.MonotonicNs() >= end_ns) {
+      return DeadlineExceeded(Str("the query took longer than ", limits.timeout.count(),
+                                  " ms: ask for less, or for a longer timeout"));
+    }
+    if (SqliteBytesOfThread() - memory_before > static_cast<int64_t>(limits.max_work_bytes)) {
+      return ResourceExhausted(Str("the query needs more than ", limits.max_work_bytes >> 20,
+                                   " MB of memory: sort or group less"));
+    }
+    if (cancelled()) return Cancelled("the query was cancelled");
+    return Status();
+  }
+};
+
+Result<std::unique_ptr<SqlQuery>> SqlQuery::Open(const std::filesystem::path& file,
+                                                 const Clock& clock, int connections) {
+  std::vector<Database> databases;
+  for (int i = 0; i < connections; ++i) {
+    VS_ASSIGN_OR_RETURN(databases.emplace_back(), OpenForStrangers(file));
+  }
+  return std::unique_ptr<SqlQuery>(new SqlQuery(std::move(databases), clock));
+}
+
+SqlQuery::SqlQuery(std::vector<Database> databases, const Clock& clock)
+    : clock_(clock), free_(std::move(databases)) {}
 
 SqlQuery::~SqlQuery() = default;
 
-// The connection is ours until this goes, however the statement ends; an exception, too.
+// A connection is ours until this goes, however the statement ends; an exception, too.
 class SqlQuery::Turn {
  public:
-  // `query` is busy on our behalf. `watch` outlives this.
-  Turn(SqlQuery& query, Watch& watch) : query_(query) {
-    watch.memory_before = sqlite3_memory_used();
-    sqlite3_progress_handler(query_.database_.handle(), kStepsBetweenChecks, &Watch::Look, &watch);
+  // `database` is one of `query`, to which it goes back. `watch` outlives this.
+  Turn(SqlQuery& query, Database database, Watch& watch)
+      : query_(query), database_(std::move(database)) {
+    watch.memory_before = SqliteBytesOfThread();
+    sqlite3_progress_handler(database_.handle(), kStepsBetweenChecks, &Watch::Look, &watch);
   }
   ~Turn() {
-    sqlite3_progress_handler(query_.database_.handle(), 0, nullptr, nullptr);
+    sqlite3_progress_handler(database_.handle(), 0, nullptr, nullptr);
     {
       MutexLock lock(query_.mutex_);
-      query_.busy_ = false;
+      query_.free_.push_back(std::move(database_));  // has room for all of them
     }
-    query_.free_.NotifyOne();
+    query_.given_back_.NotifyOne();
   }
   Turn(const Turn&) = delete;
   Turn& operator=(const Turn&) = delete;
 
+  Database& database() { return database_; }
+
  private:
   SqlQuery& query_;
+  Database database_;
 };
+
+Result<Database> SqlQuery::TakeConnection(const Watch& watch) {
+  MutexLock lock(mutex_);
+  VS_RETURN_IF_ERROR(watch.Judge());
+  while (free_.empty()) {
+    given_back_.WaitFor(mutex_, std::chrono::milliseconds(20));
+    VS_RETURN_IF_ERROR(watch.Judge());
+  }
+  Database database = std::move(free_.back());
+  free_.pop_back();
+  return database;
+}
 
 Result<SqlTable> SqlQuery::Run(const std::string& sql, const std::vector<SqlValue>& arguments,
                                const SqlLimits& limits, const std::function<bool()>& cancelled) {
   const int64_t since_ns = limits.since_ns.value_or(clock_.MonotonicNs());
   Watch watch{clock_, limits, cancelled,
               since_ns + std::chrono::nanoseconds(limits.timeout).count()};
-  {
-    MutexLock lock(mutex_);
-    VS_RETURN_IF_ERROR(watch.Judge());
-    while (busy_) {
-      free_.WaitFor(mutex_, std::chrono::milliseconds(20));
-      VS_RETURN_IF_ERROR(watch.Judge());
-    }
-    busy_ = true;
-  }
-  const Turn turn(*this, watch);
-  Result<SqlTable> table = Read(sql, arguments, limits);
+  VS_ASSIGN_OR_RETURN(Database database, TakeConnection(watch));
+  Turn turn(*this, std::move(database), watch);
+  Result<SqlTable> table = Read(turn.database(), sql, arguments, limits);
   if (!watch.stopped_because.ok()) return watch.stopped_because;
   return table;
-}
-
-Result<SqlTable> SqlQuery::Read(const std::string& sql, const std::vector<SqlValue>& arguments,
-                                const SqlLimits& limits) {
-  VS_ASSIGN_OR_RETURN(Statement query, PrepareOne(database_, sql));
-  const int wanted = sqlite3_bind_parameter_count(query.handle());
-  if (wanted != static_cast<int>(arguments.size())) {
-    return InvalidArgument(
-        Str("the query takes ", wanted, " arguments, ", arguments.size(), " were given"));
-  }
-  Bind(arguments, query);
-  SqlTable table;
-  table.columns = ColumnNames(query);
-  size_t bytes = 0;
-  while (true) {
-    const Result<bool> row = query.Step();
-    if (!row.has_value()) return ForClient(database_, row.error());
-    if (!*row) return table;
-    if (table.rows.size() == limits.max_rows) {
-      table.truncated = true;
-      return table;
-    }
-    std::vector<SqlValue>& cells = table.rows.emplace_back();
-    for (size_t i = 0; i < table.columns.size(); ++i) {
-      cells.push_back(ReadCell(query, static_cast<int>(i)));
-      bytes += BytesOf(cells.back());
-    }
-    if (bytes > limits.max_answer_bytes) {
-      return ResourceExhausted(Str("the answer is larger than ", limits.max_answer_bytes >> 10,
-                                   " kB: select fewer columns or rows, or export as CSV"));
-    }
-  }
 }
 
 }  // namespace vs

@@ -40,13 +40,13 @@ struct SqlLimits {
 };
 
 // Runs SELECT statements of strangers over the tables of results (see result_schema.h) without
-// letting them write, reach other files or take more than their share. One at a time: the others
-// wait within their own time limit. Thread-safe.
+// letting them write, reach other files or take more than their share. As many at a time as it has
+// connections: the others wait within their own time limit. Thread-safe.
 class SqlQuery {
  public:
-  // The store must exist.
+  // The store must exist. `connections`: 1 or more.
   static Result<std::unique_ptr<SqlQuery>> Open(const std::filesystem::path& file,
-                                                const Clock& clock);
+                                                const Clock& clock, int connections = 1);
   ~SqlQuery();
 
   // `arguments` are bound to ?1, ?2 ...; `cancelled` is asked now and then. INVALID_ARGUMENT for
@@ -60,16 +60,14 @@ class SqlQuery {
   struct Watch;
   class Turn;
 
-  SqlQuery(Database database, const Clock& clock);
-
-  Result<SqlTable> Read(const std::string& sql, const std::vector<SqlValue>& arguments,
-                        const SqlLimits& limits);
+  SqlQuery(std::vector<Database> databases, const Clock& clock);
+  // Waits for one. What `watch` finds meanwhile.
+  Result<Database> TakeConnection(const Watch& watch) VS_EXCLUDES(mutex_);
 
   const Clock& clock_;
   Mutex mutex_;
-  CondVar free_;
-  bool busy_ VS_GUARDED_BY(mutex_) = false;
-  Database database_;  // of whoever set busy_
+  CondVar given_back_;
+  std::vector<Database> free_ VS_GUARDED_BY(mutex_);  // the connections that nobody uses
 };
 
 }  // namespace vs

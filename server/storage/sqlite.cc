@@ -6,6 +6,7 @@
 
 #include "engine/base/check.h"
 #include "engine/base/str.h"
+#include "server/storage/sqlite_memory.h"
 
 namespace vs {
 namespace {
@@ -126,6 +127,7 @@ bool Statement::IsNull(int column) const {
 void Database::Close::operator()(sqlite3* connection) const { sqlite3_close_v2(connection); }
 
 Result<Database> Database::Open(const std::filesystem::path& file, Access access) {
+  CountSqliteMemory();
   const int flags = access == Access::kReadOnly    ? SQLITE_OPEN_READONLY
                     : access == Access::kReadWrite ? SQLITE_OPEN_READWRITE
                                                    : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;

@@ -228,5 +228,30 @@ TEST_F(SqlQueryTest, ACancelledQueryEndsAndTheOneBehindItGetsItsTurn) {
   EXPECT_EQ(StatusCode::kCancelled, first.code());
 }
 
+TEST_F(SqlQueryTest, AGreedyQueryIsNotChargedToTheOneBesideIt) {
+  const auto both = SqlQuery::Open(file_, clock_, 2).value();
+  const SqlLimits limits{.timeout = std::chrono::minutes(5), .max_work_bytes = 8 << 20};
+  std::atomic<bool> modest_runs = false;
+  std::atomic<bool> greedy_ended = false;
+  Status greedy;
+  std::thread thread([&] {
+    EXPECT_TRUE(test::WaitUntil([&] { return modest_runs.load(); }));
+    const auto answer = both->Run(
+        "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n LIMIT 100000000)"
+        " SELECT i, randomblob(1000) AS r FROM n ORDER BY r",
+        {}, limits, [] { return false; });
+    greedy = answer.has_value() ? Status() : answer.error();
+    greedy_ended = true;
+  });
+  // Looks at its memory as often as the other does, and outlives it.
+  const auto modest = both->Run(kEndless, {}, limits, [&] {
+    modest_runs = true;
+    return greedy_ended.load();
+  });
+  thread.join();
+  EXPECT_EQ(StatusCode::kResourceExhausted, greedy.code()) << greedy.ToString();
+  EXPECT_EQ(StatusCode::kCancelled, modest.error().code()) << modest.error().ToString();
+}
+
 }  // namespace
 }  // namespace vs
