@@ -27,7 +27,7 @@ Dispatcher::Dispatcher(const Router& router, Gatekeeper& gatekeeper,
       quick_(options.quick_threads, options.quick_queue),
       slow_(options.slow_threads, options.slow_queue),
       list_(1, options.list_queue),
-      query_(1, options.query_queue),
+      query_(options.queries),
       password_(1, options.password_queue),
       // Each open stream queues at most twice, and their number is bounded.
       stream_(options.stream_threads, std::numeric_limits<size_t>::max()) {
@@ -37,8 +37,8 @@ Dispatcher::Dispatcher(const Router& router, Gatekeeper& gatekeeper,
 
 Dispatcher::~Dispatcher() {
   // Their tasks may still post to each other, so all of them stop before any of them goes.
-  for (Executor* executor : {&quick_, &slow_, &list_, &query_, &password_, &stream_})
-    executor->Stop();
+  query_.Stop();
+  for (Executor* executor : {&quick_, &slow_, &list_, &password_, &stream_}) executor->Stop();
 }
 
 std::shared_ptr<ServerCall> Dispatcher::Begin(const std::string& method,
@@ -96,21 +96,26 @@ std::vector<MethodStats> Dispatcher::Statistics() const {
   return all;
 }
 
-Executor& Dispatcher::executor(Lane lane) {
+Status Dispatcher::Post(Lane lane, const ServerCall& call, std::function<void()> task) {
+  const auto post = [&task](Executor& executor) {
+    if (executor.Post(std::move(task))) return Status();
+    return ResourceExhausted("the server is busy with other calls of this kind; try again shortly")
+        .WithReason("OVERLOADED");
+  };
   switch (lane) {
     case Lane::kSlow:
-      return slow_;
+      return post(slow_);
     case Lane::kList:
-      return list_;
+      return post(list_);
     case Lane::kQuery:
-      return query_;
+      return query_.Post(SessionOf(call.call()), std::move(task));
     case Lane::kPassword:
-      return password_;
+      return post(password_);
     case Lane::kInline:
     case Lane::kQuick:
       break;
   }
-  return quick_;
+  return post(quick_);
 }
 
 void Dispatcher::Add(const std::shared_ptr<ServerCall>& call) {

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -12,6 +13,7 @@
 #include "engine/base/mutex.h"
 #include "server/rpc/auditor.h"
 #include "server/rpc/executor.h"
+#include "server/rpc/fair_executor.h"
 #include "server/rpc/gatekeeper.h"
 #include "server/rpc/router.h"
 #include "server/rpc/server_call.h"
@@ -25,7 +27,7 @@ struct DispatcherOptions {
   int slow_threads = 4;
   size_t slow_queue = 64;
   size_t list_queue = 64;
-  size_t query_queue = 16;
+  FairExecutorOptions queries{.threads = kQueriesAtOnce};
   // Each hash takes 64 MiB and a fifth of a second: one at a time, and few may wait.
   size_t password_queue = 16;
   int stream_threads = 2;
@@ -81,7 +83,8 @@ class Dispatcher {
     std::atomic<int64_t> max_ns{0};
   };
 
-  Executor& executor(Lane lane);
+  // Runs `task` of `call` on its lane. RESOURCE_EXHAUSTED, UNAVAILABLE: see FairExecutor.
+  Status Post(Lane lane, const ServerCall& call, std::function<void()> task);
   bool Records(const std::string& method) const {
     return auditor_ != nullptr && auditor_->Records(method);
   }
@@ -109,7 +112,7 @@ class Dispatcher {
   Executor quick_;
   Executor slow_;
   Executor list_;
-  Executor query_;
+  FairExecutor query_;
   Executor password_;
   Executor stream_;
   Timer timer_;  // last: it goes first and posts to the others

@@ -24,9 +24,12 @@ enum class Lane {
   kQuick,     // milliseconds: memory and small files
   kSlow,      // anything that waits for a camera or for blocks to start and stop
   kList,      // a page of what is stored on the disk
-  kQuery,     // a client's own SQL, which takes as long as it pleases: one at a time
+  kQuery,     // a client's own SQL, which takes as long as it pleases: one at a time of each login
   kPassword,  // password hashing: one at a time
 };
+
+// Each takes a core, which the sequences need more; with one only, a slow query held up all others.
+inline constexpr int kQueriesAtOnce = 2;
 
 struct MethodOptions {
   Lane lane = Lane::kQuick;

@@ -105,15 +105,10 @@ void ServerCall::OnRequest(std::optional<std::string> bytes) {
     return;
   }
   const auto request = std::make_shared<const std::string>(std::move(*bytes));
-  const bool queued =
-      dispatcher_.executor(method_->options.lane).Post([self = shared_from_this(), request] {
-        self->Guarded([&] { self->RunHandler(*request); });
-      });
-  if (!queued) {
-    FinishWith(
-        ResourceExhausted("the server is busy with other calls of this kind; try again shortly")
-            .WithReason("OVERLOADED"));
-  }
+  const Status queued = dispatcher_.Post(
+      method_->options.lane, *this,
+      [self = shared_from_this(), request] { self->Guarded([&] { self->RunHandler(*request); }); });
+  if (!queued.ok()) FinishWith(queued);
 }
 
 void ServerCall::RunHandler(const std::string& request) {

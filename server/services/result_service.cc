@@ -116,7 +116,7 @@ Result<std::unique_ptr<ResultService>> ResultService::Make(ResultStore& store,
   VS_ASSIGN_OR_RETURN(readers.lists, ResultReader::Open(store.file()));
   VS_ASSIGN_OR_RETURN(readers.exports, ResultReader::Open(store.file()));
   VS_ASSIGN_OR_RETURN(readers.watches, ResultReader::Open(store.file()));
-  VS_ASSIGN_OR_RETURN(readers.query, SqlQuery::Open(store.file(), clock));
+  VS_ASSIGN_OR_RETURN(readers.query, SqlQuery::Open(store.file(), clock, kQueriesAtOnce));
   return std::unique_ptr<ResultService>(new ResultService(store, data_dir, std::move(readers)));
 }
 

@@ -14,6 +14,7 @@
 
 #include "grpc/health/v1/health.pb.h"
 #include "grpc/reflection/v1alpha/reflection.pb.h"
+#include "visionserver/v1/result.pb.h"
 #include "visionserver/v1/session.pb.h"
 
 #include "engine/base/mutex.h"
@@ -30,6 +31,7 @@ using grpc::health::v1::HealthCheckResponse;
 inline constexpr const char* kLogin = "/visionserver.v1.SessionService/Login";
 inline constexpr const char* kWhoAmI = "/visionserver.v1.SessionService/WhoAmI";
 inline constexpr const char* kLogout = "/visionserver.v1.SessionService/Logout";
+inline constexpr const char* kQuery = "/visionserver.v1.ResultService/QueryResults";
 inline constexpr const char* kWatch = "/grpc.health.v1.Health/Watch";
 inline constexpr const char* kCheck = "/grpc.health.v1.Health/Check";
 inline constexpr const char* kExchange =
@@ -201,6 +203,14 @@ class TestService {
   Result<pb::LogoutResponse> Logout(const Call& /*call*/, const pb::LogoutRequest& /*request*/) {
     return pb::LogoutResponse();
   }
+  Result<pb::QueryResultsResponse> Query(const Call& /*call*/,
+                                         const pb::QueryResultsRequest& request) {
+    if (request.sql() == "wait") {
+      waiting.count_down();
+      go_on.wait();
+    }
+    return pb::QueryResultsResponse();
+  }
   Result<std::unique_ptr<StreamSource>> Watch(const Call& /*call*/,
                                               const HealthCheckRequest& request) {
     if (request.service() == "nothing") return NotFound("nothing there");
@@ -231,6 +241,7 @@ class DispatcherTest : public ::testing::Test {
     MethodOptions refusing;
     refusing.admit = [](const Call& /*call*/) { return ResourceExhausted("too often"); };
     router_.Unary(kLogout, &service_, &TestService::Logout, refusing);
+    router_.Unary(kQuery, &service_, &TestService::Query, {.lane = Lane::kQuery});
     router_.Stream(kWatch, &service_, &TestService::Watch);
     // A unary method whose answer comes from a source.
     router_.Stream(kCheck, &service_, &TestService::Watch);
@@ -249,6 +260,11 @@ class DispatcherTest : public ::testing::Test {
   static std::string LoginBytes(const std::string& user) {
     pb::LoginRequest request;
     request.set_user(user);
+    return request.SerializeAsString();
+  }
+  static std::string QueryBytes(const std::string& sql) {
+    pb::QueryResultsRequest request;
+    request.set_sql(sql);
     return request.SerializeAsString();
   }
   static std::string WatchBytes(const std::string& name) {

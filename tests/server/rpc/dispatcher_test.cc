@@ -80,6 +80,41 @@ TEST_F(DispatcherTest, FullLaneTurnsCallsAway) {
   EXPECT_TRUE(queued.status().ok());
 }
 
+TEST_F(DispatcherTest, ASlowQueryHoldsUpOnlyThoseOfItsOwnLogin) {
+  FakeChannel slow;
+  Begin(kQuery, slow, "good anna")->OnRequest(QueryBytes("wait"));
+  service_.waiting.wait();
+  FakeChannel own;
+  Begin(kQuery, own, "good anna")->OnRequest(QueryBytes("quick"));
+  for (const char* other : {"good ben", "good cleo"}) {
+    FakeChannel channel;
+    Begin(kQuery, channel, other)->OnRequest(QueryBytes("quick"));
+    EXPECT_TRUE(channel.status().ok());
+  }
+  EXPECT_FALSE(own.finished);
+  service_.go_on.count_down();
+  EXPECT_TRUE(slow.status().ok());
+  EXPECT_TRUE(own.status().ok());
+}
+
+TEST_F(DispatcherTest, OneLoginDoesNotFillTheQueueOfQueries) {
+  Start({.queries = {.max_waiting = 2, .max_waiting_each = 1}});
+  FakeChannel slow;
+  Begin(kQuery, slow, "good anna")->OnRequest(QueryBytes("wait"));
+  service_.waiting.wait();
+  FakeChannel own;
+  Begin(kQuery, own, "good anna")->OnRequest(QueryBytes("quick"));
+  FakeChannel surplus;
+  Begin(kQuery, surplus, "good anna")->OnRequest(QueryBytes("quick"));
+  EXPECT_EQ(surplus.status().code(), StatusCode::kResourceExhausted);
+  EXPECT_EQ(surplus.status().reason(), "OVERLOADED");
+  EXPECT_THAT(surplus.status().message(), HasSubstr("this login has 1 calls"));
+  FakeChannel other;
+  Begin(kQuery, other, "good ben")->OnRequest(QueryBytes("quick"));
+  EXPECT_TRUE(other.status().ok());
+  service_.go_on.count_down();
+}
+
 TEST_F(DispatcherTest, HandlerLearnsThatTheClientHasGone) {
   FakeChannel channel;
   const auto call = Begin(kLogin, channel);
