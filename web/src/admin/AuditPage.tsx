@@ -36,7 +36,7 @@ export default function AuditPage() {
           pageSize: kPageSize,
           pageToken: pageParam,
         },
-        { signal, timeoutMs: 10_000 },
+        { signal },
       ),
     initialPageParam: '',
     getNextPageParam: (page) => page.nextPageToken || undefined,

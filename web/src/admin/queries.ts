@@ -2,12 +2,11 @@ import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { api } from '../api/clients';
 
 const kRefreshMs = 5000;
-const kTimeoutMs = 10_000;
 
 export function useUsers() {
   return useQuery({
     queryKey: ['admin', 'users'],
-    queryFn: ({ signal }) => api.users.listUsers({}, { signal, timeoutMs: kTimeoutMs }),
+    queryFn: ({ signal }) => api.users.listUsers({}, { signal }),
     refetchInterval: kRefreshMs,
   });
 }
@@ -15,7 +14,7 @@ export function useUsers() {
 export function useAllSessions() {
   return useQuery({
     queryKey: ['admin', 'sessions'],
-    queryFn: ({ signal }) => api.users.listSessions({}, { signal, timeoutMs: kTimeoutMs }),
+    queryFn: ({ signal }) => api.users.listSessions({}, { signal }),
     refetchInterval: kRefreshMs,
   });
 }
@@ -23,7 +22,7 @@ export function useAllSessions() {
 export function useApiKeys() {
   return useQuery({
     queryKey: ['admin', 'keys'],
-    queryFn: ({ signal }) => api.users.listApiKeys({}, { signal, timeoutMs: kTimeoutMs }),
+    queryFn: ({ signal }) => api.users.listApiKeys({}, { signal }),
     refetchInterval: kRefreshMs,
   });
 }

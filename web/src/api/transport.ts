@@ -3,6 +3,7 @@ import { createGrpcWebTransport } from '@connectrpc/connect-web';
 import { noteFailure } from './connection';
 import { isUnauthenticated, reasonOf } from './errors';
 import { useSession } from './session';
+import { withoutDeadline, withTimeLimit } from './timeLimit';
 import { until } from './wait';
 
 /** Tells session and connection what a failed call says about them; `token` is what it carried. */
@@ -28,7 +29,8 @@ async function* noted(messages: StreamResponse['message'], token: string | undef
 /**
  * Gives each call the token. A unary call that is refused because the session has ended waits until
  * its user has logged in again, and is then repeated, so a page loses nothing; it fails when the user
- * logs out instead. A stream fails; who opened it opens it again (see `keepStreaming`).
+ * logs out instead. Each attempt has the call's whole time limit. A stream fails; who opened it opens
+ * it again (see `sequence/stream`).
  */
 export const withSession: Interceptor = (next) => async (request) => {
   for (;;) {
@@ -56,7 +58,9 @@ export const withSession: Interceptor = (next) => async (request) => {
 const base = { baseUrl: window.location.origin };
 
 /** All calls go to the page's own origin, as gRPC-Web in its binary form. */
-export const transport = createGrpcWebTransport({ ...base, interceptors: [withSession] });
+export const transport = withoutDeadline(
+  createGrpcWebTransport({ ...base, interceptors: [withSession, withTimeLimit] }),
+);
 
 /** Without token and without telling anybody of failures. */
 export const bareTransport = createGrpcWebTransport(base);

@@ -11,7 +11,6 @@ import { notifyError } from '../shell/ErrorNote';
 // tabs, and the one stream of a tab is for pictures. Hidden tabs do not poll.
 const kFastMs = 1000;
 const kSlowMs = 2000;
-const kTimeoutMs = 10_000;
 
 /** A stored sequence and, unless it is stopped, what it is doing. */
 export interface SequenceRow {
@@ -20,7 +19,7 @@ export interface SequenceRow {
 }
 
 async function loadSequences(signal: AbortSignal): Promise<SequenceRow[]> {
-  const options = { signal, timeoutMs: kTimeoutMs };
+  const options = { signal };
   const { sequences } = await api.sequences.listSequences({}, options);
   return Promise.all(
     sequences.map(async (sequence) => ({
@@ -44,7 +43,7 @@ export function useSequences() {
 export function useCameras() {
   return useQuery({
     queryKey: ['overview', 'cameras'],
-    queryFn: ({ signal }) => api.cameras.listCameras({}, { signal, timeoutMs: kTimeoutMs }),
+    queryFn: ({ signal }) => api.cameras.listCameras({}, { signal }),
     refetchInterval: kFastMs,
   });
 }
@@ -52,7 +51,7 @@ export function useCameras() {
 export function useAlarms() {
   return useQuery({
     queryKey: ['overview', 'alarms'],
-    queryFn: ({ signal }) => api.system.listAlarms({}, { signal, timeoutMs: kTimeoutMs }),
+    queryFn: ({ signal }) => api.system.listAlarms({}, { signal }),
     refetchInterval: kSlowMs,
   });
 }
@@ -60,7 +59,7 @@ export function useAlarms() {
 export function useResources() {
   return useQuery({
     queryKey: ['overview', 'resources'],
-    queryFn: ({ signal }) => api.system.getResources({}, { signal, timeoutMs: kTimeoutMs }),
+    queryFn: ({ signal }) => api.system.getResources({}, { signal }),
     refetchInterval: kSlowMs,
   });
 }
@@ -68,7 +67,7 @@ export function useResources() {
 export function useStatistics() {
   return useQuery({
     queryKey: ['overview', 'statistics'],
-    queryFn: ({ signal }) => api.system.getStatistics({}, { signal, timeoutMs: kTimeoutMs }),
+    queryFn: ({ signal }) => api.system.getStatistics({}, { signal }),
     refetchInterval: kSlowMs,
   });
 }

@@ -6,7 +6,7 @@ import { SequenceRunState } from '../gen/visionserver/v1/sequence_pb';
 export function useSequenceState(id: string) {
   return useQuery({
     queryKey: ['sequence-state', id],
-    queryFn: ({ signal }) => api.sequences.getSequenceState({ id }, { signal, timeoutMs: 10_000 }),
+    queryFn: ({ signal }) => api.sequences.getSequenceState({ id }, { signal }),
     refetchInterval: 1000,
   });
 }

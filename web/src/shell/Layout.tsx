@@ -18,7 +18,7 @@ function useFreshRole() {
   const { login, setLogin } = useSession();
   const { data } = useQuery({
     queryKey: ['whoAmI'],
-    queryFn: ({ signal }) => api.sessions.whoAmI({}, { signal, timeoutMs: 10_000 }),
+    queryFn: ({ signal }) => api.sessions.whoAmI({}, { signal }),
     refetchInterval: 30_000,
     enabled: login !== null,
   });

@@ -6,7 +6,7 @@ import { api } from '../api/clients';
 export function useServerInfo() {
   return useQuery({
     queryKey: ['serverInfo'],
-    queryFn: ({ signal }) => api.system.getServerInfo({}, { signal, timeoutMs: 10_000 }),
+    queryFn: ({ signal }) => api.system.getServerInfo({}, { signal }),
     staleTime: Infinity,
   }).data;
 }

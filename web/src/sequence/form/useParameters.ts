@@ -6,7 +6,6 @@ import { valueOf } from './value';
 
 // Changes by others appear within this time. A stream of them would be the tab's second one.
 const PERIOD_MS = 1500;
-const options = { timeoutMs: 10_000 };
 
 /** The editor of a sequence's parameters, kept up to date while the tab is visible. */
 export function useParameterEditor(sequence: string): ParameterEditor {
@@ -38,12 +37,12 @@ export function useField(editor: ParameterEditor, path: string): Field | undefin
 
 function callsOf(sequence: string): ParameterCalls {
   return {
-    list: async () => (await api.parameters.listParameters({ sequence }, options)).parameters,
+    list: async () => (await api.parameters.listParameters({ sequence })).parameters,
     set: (path, info, value) => {
       const values = [{ path, value: valueOf(info.type, value) }];
-      return api.parameters.setParameters({ sequence, values }, options);
+      return api.parameters.setParameters({ sequence, values });
     },
-    reset: (paths) => api.parameters.resetParameters({ sequence, paths }, options),
+    reset: (paths) => api.parameters.resetParameters({ sequence, paths }),
     // Of all faults the one that is about this parameter; its name is beside the text already.
     textOf: (error, path) => {
       const lines = messageOf(error).split('\n');
