@@ -1,15 +1,12 @@
 import { Code, ConnectError } from '@connectrpc/connect';
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { noteFailure, setProbe, useConnection } from './connection';
-import { keepStreaming } from './keepStreaming';
-import { useSession } from './session';
 
 const gone = () => ConnectError.from(new TypeError('Failed to fetch'));
 
 beforeEach(() => {
   vi.useFakeTimers();
   useConnection.setState({ lost: false, recoveries: 0 });
-  useSession.getState().clear();
 });
 afterEach(() => vi.useRealTimers());
 
@@ -45,79 +42,5 @@ describe('a lost connection', () => {
   it('is not what the server says about something else', () => {
     noteFailure(new ConnectError('no such sequence', Code.NotFound));
     expect(useConnection.getState().lost).toBe(false);
-  });
-});
-
-describe('a kept stream', () => {
-  /** Opens one after the other; each yields what stands there, an error is thrown. */
-  function streams(...all: (number | Error)[][]) {
-    let opened = 0;
-    return {
-      opened: () => opened,
-      // eslint-disable-next-line @typescript-eslint/require-await
-      open: async function* (this: void) {
-        for (const item of all[opened++] ?? []) {
-          if (item instanceof Error) throw item;
-          yield item;
-        }
-      },
-    };
-  }
-
-  async function collect(source: AsyncIterable<number>, into: number[]) {
-    for await (const item of source) into.push(item);
-  }
-
-  it('goes on by itself once the server answers again', async () => {
-    let answers = false;
-    setProbe(() => (answers ? Promise.resolve() : Promise.reject(gone())));
-    const source = streams([1, 2, gone()], [3]);
-    const stop = new AbortController();
-    const seen: number[] = [];
-    const breaks: unknown[] = [];
-    const done = collect(
-      keepStreaming(source.open, stop.signal, (error) => {
-        breaks.push(error);
-        noteFailure(error);
-      }),
-      seen,
-    ).catch(() => {});
-    await vi.advanceTimersByTimeAsync(20_000);
-    expect([seen, source.opened()]).toEqual([[1, 2], 1]);
-    answers = true;
-    await vi.advanceTimersByTimeAsync(6_000);
-    expect(seen).toEqual([1, 2, 3]);
-    expect(breaks[0]).toBeInstanceOf(ConnectError);
-    stop.abort();
-    await done;
-  });
-
-  it('waits for the next login when the session has ended', async () => {
-    const login = { token: 'a', user: 'anna', role: 1, sessionId: 's', mustChangePassword: false };
-    useSession.getState().setLogin(login);
-    const ended = new ConnectError('the session has ended', Code.Unauthenticated);
-    const source = streams([1, ended], [2]);
-    const stop = new AbortController();
-    const seen: number[] = [];
-    const done = collect(
-      keepStreaming(source.open, stop.signal, () => useSession.getState().setExpired()),
-      seen,
-    ).catch(() => {});
-    await vi.advanceTimersByTimeAsync(60_000);
-    expect(source.opened()).toBe(1);
-    useSession.getState().setLogin({ ...login, token: 'b' });
-    await vi.advanceTimersByTimeAsync(500);
-    expect(seen).toEqual([1, 2]);
-    stop.abort();
-    await done;
-  });
-
-  it('ends when nobody wants it any more', async () => {
-    const stop = new AbortController();
-    const done = collect(keepStreaming(streams([1]).open, stop.signal), []);
-    const failed = expect(done).rejects.toBe('left');
-    await vi.advanceTimersByTimeAsync(100);
-    stop.abort('left');
-    await failed;
   });
 });

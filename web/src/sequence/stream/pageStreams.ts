@@ -1,20 +1,16 @@
 import { api } from '../../api/clients';
 import { useConnection } from '../../api/connection';
-import { measureServerClock, serverNowNs } from '../../api/serverClock';
+import { followServerClock, serverNowNs } from '../../api/serverClock';
 import { useSession } from '../../api/session';
 import { Decoder } from '../codec/decoder';
 import type { Surroundings } from './liveStream';
 import { Multiplexer } from './multiplexer';
 
-// A call that takes longer than this has lost its server.
-const TIMEOUT_MS = 10_000;
-
 /** The one Subscribe of this tab. */
 export const multiplexer = new Multiplexer({
   subscribe: (subscriptions, signal) => api.streams.subscribe({ subscriptions }, { signal }),
-  update: (streamId, set, remove) =>
-    api.streams.updateSubscriptions({ streamId, set, remove }, { timeoutMs: TIMEOUT_MS }),
-  ack: (streamId, items) => api.streams.ack({ streamId, items }, { timeoutMs: TIMEOUT_MS }),
+  update: (streamId, set, remove) => api.streams.updateSubscriptions({ streamId, set, remove }),
+  ack: (streamId, items) => api.streams.ack({ streamId, items }),
 });
 
 /** The one decoder of this tab. */
@@ -37,7 +33,12 @@ useSession.subscribe(follow);
 useConnection.subscribe((now, before) => {
   if (now.recoveries !== before.recoveries) multiplexer.restart();
 });
-// A server that was started again may have another clock.
+// Only the delay of what is on the screen needs the clock, so it ends with the stream.
+let clock: AbortController | undefined;
 multiplexer.onConnection(() => {
-  if (multiplexer.connection === 'open') void measureServerClock();
+  clock?.abort();
+  clock = undefined;
+  if (multiplexer.connection !== 'open') return;
+  clock = new AbortController();
+  void followServerClock(clock.signal);
 });
