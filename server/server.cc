@@ -50,7 +50,7 @@ DispatcherOptions ToDispatcherOptions(const config::Limits& limits) {
   DispatcherOptions options;
   options.max_open_streams = limits.open_streams();
   options.max_streams_per_session = limits.streams_per_session();
-  options.unread_limit_ns = int64_t{limits.unread_ms()} * 1'000'000;
+  options.unread.silence = milliseconds(limits.unread_ms());
   return options;
 }
 
@@ -77,7 +77,7 @@ HttpServerOptions ToHttpOptions(const config::ServerConfig& config, ListenAddres
               .idle = milliseconds(web.idle_ms()),
               .calls = {.request_bytes = static_cast<size_t>(limits.request_kib()) << 10,
                         .request_time = milliseconds(web.body_ms()),
-                        .unread = milliseconds(limits.unread_ms()),
+                        .unread = {.silence = milliseconds(limits.unread_ms())},
                         .memory_bytes = static_cast<size_t>(limits.receive_memory_mib()) << 20}}};
 }
 

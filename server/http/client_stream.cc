@@ -1,9 +1,11 @@
 #include "server/http/client_stream.h"
 
+#include <linux/sockios.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -39,12 +41,18 @@ void Advance(std::span<const std::string_view>& pieces, size_t& offset, size_t c
   }
 }
 
+// Of what was written: which the client has not acknowledged.
+int UnreadBytes(int fd) {
+  int count = 0;
+  return ::ioctl(fd, SIOCOUTQ, &count) == 0 ? count : 0;
+}
+
 }  // namespace
 
 void ClientStream::FreeTls::operator()(ssl_st* tls) const { SSL_free(tls); }
 
-ClientStream::ClientStream(int fd)
-    : fd_(fd), wake_event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+ClientStream::ClientStream(int fd, const Clock& clock)
+    : clock_(clock), fd_(fd), wake_event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   // Without it nobody could interrupt: such a connection ends at its first step.
   if (wake_event_ < 0) cut_ = true;
 }
@@ -72,7 +80,8 @@ std::optional<char> ClientStream::Peek(const Deadline& deadline) {
 bool ClientStream::StartTls(ssl_ctx_st* context, const Deadline& deadline) {
   tls_.reset(SSL_new(context));
   if (!tls_ || SSL_set_fd(tls_.get(), fd_) != 1) return false;
-  return Tls(Purpose::kReading, deadline, [&] { return SSL_accept(tls_.get()); }) > 0;
+  const auto await = [&](short events) { return Poll(events, Purpose::kReading, deadline); };
+  return Tls(Purpose::kReading, await, [&] { return SSL_accept(tls_.get()); }) > 0;
 }
 
 bool ClientStream::AwaitData(const Deadline& deadline) {
@@ -83,8 +92,9 @@ bool ClientStream::AwaitData(const Deadline& deadline) {
 size_t ClientStream::Read(void* data, size_t size, const Deadline& deadline) {
   if (tls_) {
     const auto most = static_cast<int>(std::min<size_t>(size, std::numeric_limits<int>::max()));
+    const auto await = [&](short events) { return Poll(events, Purpose::kReading, deadline); };
     return static_cast<size_t>(
-        Tls(Purpose::kReading, deadline, [&] { return SSL_read(tls_.get(), data, most); }));
+        Tls(Purpose::kReading, await, [&] { return SSL_read(tls_.get(), data, most); }));
   }
   while (MayContinue(Purpose::kReading)) {
     const ssize_t count = ::recv(fd_, data, size, 0);
@@ -95,11 +105,14 @@ size_t ClientStream::Read(void* data, size_t size, const Deadline& deadline) {
   return 0;
 }
 
-bool ClientStream::Write(std::span<const std::string_view> pieces, const Deadline& deadline) {
-  return tls_ ? WriteTls(pieces, deadline) : WritePlain(pieces, deadline);
+bool ClientStream::Write(std::span<const std::string_view> pieces, const Patience& patience) {
+  size_t size = 0;
+  for (const std::string_view piece : pieces) size += piece.size();
+  const Pace pace{patience.silence, Deadline(clock_, patience.For(size))};
+  return tls_ ? WriteTls(pieces, pace) : WritePlain(pieces, pace);
 }
 
-bool ClientStream::WritePlain(std::span<const std::string_view> pieces, const Deadline& deadline) {
+bool ClientStream::WritePlain(std::span<const std::string_view> pieces, const Pace& pace) {
   size_t offset = 0;  // within the first piece
   Advance(pieces, offset, 0);
   while (!pieces.empty()) {
@@ -118,7 +131,7 @@ bool ClientStream::WritePlain(std::span<const std::string_view> pieces, const De
     if (sent >= 0) {
       Advance(pieces, offset, static_cast<size_t>(sent));
     } else if (errno == EAGAIN) {
-      if (!Poll(POLLOUT, Purpose::kWriting, deadline)) return false;
+      if (!AwaitReader(POLLOUT, pace)) return false;
     } else if (errno != EINTR) {
       return false;
     }
@@ -126,7 +139,8 @@ bool ClientStream::WritePlain(std::span<const std::string_view> pieces, const De
   return true;
 }
 
-bool ClientStream::WriteTls(std::span<const std::string_view> pieces, const Deadline& deadline) {
+bool ClientStream::WriteTls(std::span<const std::string_view> pieces, const Pace& pace) {
+  const auto await = [&](short events) { return AwaitReader(events, pace); };
   std::array<char, kTlsRecordBytes> gathered;  // NOLINT(*-member-init): filled before it is sent
   size_t offset = 0;
   Advance(pieces, offset, 0);
@@ -146,7 +160,7 @@ bool ClientStream::WriteTls(std::span<const std::string_view> pieces, const Dead
       }
       record = gathered.data();
     }
-    const int sent = Tls(Purpose::kWriting, deadline,
+    const int sent = Tls(Purpose::kWriting, await,
                          [&] { return SSL_write(tls_.get(), record, static_cast<int>(size)); });
     if (sent <= 0) return false;
     Advance(pieces, offset, static_cast<size_t>(sent));
@@ -156,8 +170,7 @@ bool ClientStream::WriteTls(std::span<const std::string_view> pieces, const Dead
 
 void ClientStream::CloseGently() {
   if (cut_) return;
-  const SystemClock clock;
-  const Deadline deadline(clock, kFarewell);
+  const Deadline deadline(clock_, kFarewell);
   if (tls_ && SSL_is_init_finished(tls_.get()) == 1) SSL_shutdown(tls_.get());
   ::shutdown(fd_, SHUT_WR);
   std::array<char, 16 << 10> ignored{};
@@ -200,22 +213,37 @@ bool ClientStream::Poll(short events, Purpose purpose, const Deadline& deadline)
   return false;
 }
 
+bool ClientStream::AwaitReader(short events, const Pace& pace) {
+  // The kernel makes room only after a good part of its buffer is read, which takes a slow client
+  // longer than it may be silent. So what has been read is looked at, too.
+  int unread_before = UnreadBytes(fd_);
+  while (true) {
+    const Deadline silent(clock_, std::min(pace.silence, pace.whole.Left()));
+    if (Poll(events, Purpose::kWriting, silent)) return true;
+    const int unread = UnreadBytes(fd_);
+    if (!MayContinue(Purpose::kWriting) || pace.whole.Passed() || unread >= unread_before) {
+      return false;
+    }
+    unread_before = unread;
+  }
+}
+
 bool ClientStream::MayContinue(Purpose purpose) const {
   return !cut_ && !(purpose == Purpose::kReading && reading_stopped_);
 }
 
-template <class Operation>
-int ClientStream::Tls(Purpose purpose, const Deadline& deadline, Operation operation) {
+template <class Await, class Operation>
+int ClientStream::Tls(Purpose purpose, Await await, Operation operation) {
   while (MayContinue(purpose)) {
     ERR_clear_error();
     const int result = operation();
     if (result > 0) return result;
     switch (SSL_get_error(tls_.get(), result)) {
       case SSL_ERROR_WANT_READ:
-        if (!Poll(POLLIN, purpose, deadline)) return 0;
+        if (!await(POLLIN)) return 0;
         break;
       case SSL_ERROR_WANT_WRITE:
-        if (!Poll(POLLOUT, purpose, deadline)) return 0;
+        if (!await(POLLOUT)) return 0;
         break;
       default:
         return 0;

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
 
+#include "engine/base/clock.h"
 #include "engine/base/deadline.h"
+#include "server/rpc/patience.h"
 
 struct ssl_ctx_st;
 struct ssl_st;
@@ -21,8 +24,8 @@ namespace vs {
 // One thread reads, writes and waits; Wake, StopReading and Cut may be called from any.
 class ClientStream {
  public:
-  // Owns `fd`, which does not block.
-  explicit ClientStream(int fd);
+  // Owns `fd`, which does not block. `clock` must outlive it.
+  ClientStream(int fd, const Clock& clock);
   ~ClientStream();
   ClientStream(const ClientStream&) = delete;
   ClientStream& operator=(const ClientStream&) = delete;
@@ -37,9 +40,10 @@ class ClientStream {
   // At least one byte and at most `size`. 0: the client has closed, time is over, or another thread
   // ended it.
   size_t Read(void* data, size_t size, const Deadline& deadline);
-  // All pieces, in order. False: the client has gone, did not read in time, or another thread cut
-  // it.
-  bool Write(std::span<const std::string_view> pieces, const Deadline& deadline);
+  // All pieces, in order. False: the client has gone, another thread cut it, or it does not read:
+  // nothing for as long as `patience` says (found out within twice that), or not all in the time
+  // for so many bytes.
+  bool Write(std::span<const std::string_view> pieces, const Patience& patience);
   // Ends the connection so that the client still gets what was written: without reading on for a
   // moment, a reset would overtake it.
   void CloseGently();
@@ -67,15 +71,23 @@ class ClientStream {
   bool MayContinue(Purpose purpose) const;
   bool TakeWake();
   // Repeats an operation of OpenSSL until it is done; what it returned, or 0 when it failed.
-  template <class Operation>
-  int Tls(Purpose purpose, const Deadline& deadline, Operation operation);
-  bool WritePlain(std::span<const std::string_view> pieces, const Deadline& deadline);
-  bool WriteTls(std::span<const std::string_view> pieces, const Deadline& deadline);
+  template <class Await, class Operation>
+  int Tls(Purpose purpose, Await await, Operation operation);
+  // What the writing of some pieces is held to.
+  struct Pace {
+    std::chrono::milliseconds silence;
+    Deadline whole;
+  };
+  // Until the socket has one of `events`, while the client reads.
+  bool AwaitReader(short events, const Pace& pace);
+  bool WritePlain(std::span<const std::string_view> pieces, const Pace& pace);
+  bool WriteTls(std::span<const std::string_view> pieces, const Pace& pace);
 
   struct FreeTls {
     void operator()(ssl_st* tls) const;
   };
 
+  const Clock& clock_;
   int fd_;
   const int wake_event_;
   std::unique_ptr<ssl_st, FreeTls> tls_;

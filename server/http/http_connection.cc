@@ -54,7 +54,7 @@ HttpConnection::HttpConnection(int fd, std::string client_address, std::shared_p
     : client_address_(std::move(client_address)),
       tls_(std::move(tls)),
       shared_(shared),
-      stream_(fd),
+      stream_(fd, clock_),
       reader_(stream_, shared.limits.head_bytes),
       thread_([this] { Run(); }) {}
 
@@ -138,7 +138,7 @@ bool HttpConnection::Send(const HttpRequest& request, const HttpResponse& respon
   const std::string head = ResponseHead(response.status, headers, keep_alive);
   const bool with_body = request.method != "HEAD";
   const std::array<std::string_view, 2> pieces = {head, with_body ? body : std::string_view()};
-  return stream_.Write(pieces, Deadline(clock_, shared_.limits.file)) && keep_alive;
+  return stream_.Write(pieces, shared_.limits.file) && keep_alive;
 }
 
 void HttpConnection::SendLast(const HttpResponse& response) {

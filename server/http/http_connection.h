@@ -14,6 +14,7 @@
 #include "server/http/web_call.h"
 #include "server/http/web_root.h"
 #include "server/rpc/dispatcher.h"
+#include "server/rpc/patience.h"
 #include "server/transport/acceptor.h"
 
 struct ssl_ctx_st;
@@ -29,8 +30,8 @@ struct HttpLimits {
   std::chrono::milliseconds head{10'000};
   // Between two requests.
   std::chrono::milliseconds idle{60'000};
-  // For a client to take a whole file.
-  std::chrono::milliseconds file{60'000};
+  // For a client to take a file. A page that comes slowly is better than none.
+  Patience file{.silence = std::chrono::milliseconds(30'000)};
   WebCallLimits calls;
 };
 

@@ -181,7 +181,7 @@ bool WebCall::Write(const std::optional<WireMessage>& message,
     const std::string frame = TrailerFrame(*status);
     add(ChunkHead(frame.size()) + frame + "\r\n0\r\n\r\n");
   }
-  const bool sent = stream_.Write(pieces, Deadline(clock_, limits_.unread));
+  const bool sent = stream_.Write(pieces, limits_.unread);
   if (!sent) usable_ = false;
   return sent;
 }

@@ -13,6 +13,7 @@
 #include "server/http/http_message.h"
 #include "server/http/request_reader.h"
 #include "server/rpc/dispatcher.h"
+#include "server/rpc/patience.h"
 
 namespace vs {
 
@@ -20,8 +21,8 @@ struct WebCallLimits {
   size_t request_bytes = size_t{4} << 20;
   // A request must have come whole by then.
   std::chrono::milliseconds request_time{30'000};
-  // A client that does not read a message for so long loses its call.
-  std::chrono::milliseconds unread{5'000};
+  // A client that does not read a message loses its call.
+  Patience unread;
   // For the requests of all connections that are being received.
   size_t memory_bytes = size_t{512} << 20;
 };

@@ -15,6 +15,7 @@
 #include "server/rpc/executor.h"
 #include "server/rpc/fair_executor.h"
 #include "server/rpc/gatekeeper.h"
+#include "server/rpc/patience.h"
 #include "server/rpc/router.h"
 #include "server/rpc/server_call.h"
 #include "server/rpc/timer.h"
@@ -34,8 +35,9 @@ struct DispatcherOptions {
   size_t max_open_streams = 1024;
   // Of one login session or API key; of one address when nobody is logged in.
   size_t max_streams_per_session = 32;
-  // A client that does not read a message or an answer for so long loses its call.
-  int64_t unread_limit_ns = 5'000'000'000;
+  // A client that does not read a whole message or answer in the time for its size loses its call.
+  // What is read of it meanwhile only the network knows.
+  Patience unread;
   // How often calls are inspected; revocation ends open streams within twice that.
   int64_t inspection_period_ns = 250'000'000;
 };

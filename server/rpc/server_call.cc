@@ -1,6 +1,7 @@
 #include "server/rpc/server_call.h"
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <new>
 #include <utility>
@@ -209,6 +210,7 @@ void ServerCall::SendNext(WireMessage message) {
   }
   phase_ = Phase::kSending;
   sending_since_ns_ = dispatcher_.clock_.MonotonicNs();
+  sending_bytes_ = SizeBytes(message);
   channel_->Send(std::move(message));
 }
 
@@ -279,10 +281,11 @@ void ServerCall::CutOffIfUnread(int64_t now_ns) {
   MutexLock lock(mutex_);
   const bool sending = phase_ == Phase::kSending || phase_ == Phase::kDone;
   if (!sending || cut_off_ || channel_ == nullptr) return;
-  const int64_t unread_ns = now_ns - sending_since_ns_;
-  if (unread_ns > dispatcher_.options_.unread_limit_ns) {
-    LogInfo("rpc", Str("ended ", call_.method, " of ", call_.caller.name, " at ", call_.address,
-                       ": nothing was read for ", unread_ns / 1'000'000, " ms"));
+  const std::chrono::nanoseconds unread(now_ns - sending_since_ns_);
+  if (unread > dispatcher_.options_.unread.For(sending_bytes_)) {
+    LogInfo("rpc",
+            Str("ended ", call_.method, " of ", call_.caller.name, " at ", call_.address, ": ",
+                sending_bytes_, " bytes were not read within ", unread.count() / 1'000'000, " ms"));
     if (!ending_) ending_ = Cancelled("the client did not read");
   } else if (!ending_ || now_ns - std::max(ending_since_ns_, sending_since_ns_) <= kLastMessageNs) {
     return;
@@ -302,6 +305,7 @@ void ServerCall::FinishWith(const Status& status) {
 void ServerCall::Close(const Status& status, std::optional<WireMessage> last_message) {
   phase_ = Phase::kDone;
   sending_since_ns_ = dispatcher_.clock_.MonotonicNs();
+  sending_bytes_ = last_message ? SizeBytes(*last_message) : 0;
   const bool streaming = method_ != nullptr && method_->server_streaming;
   dispatcher_.Finished(
       *this, status, streaming,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -103,6 +104,7 @@ class ServerCall : public std::enable_shared_from_this<ServerCall> {
   std::optional<Status> ending_ VS_GUARDED_BY(mutex_);  // why it ends at the next chance
   int64_t ending_since_ns_ VS_GUARDED_BY(mutex_) = 0;
   int64_t sending_since_ns_ VS_GUARDED_BY(mutex_) = 0;
+  size_t sending_bytes_ VS_GUARDED_BY(mutex_) = 0;
   int64_t timer_ns_ VS_GUARDED_BY(mutex_) = 0;  // the next wake that was asked of the timer
   bool sent_something_ VS_GUARDED_BY(mutex_) = false;
   bool cut_off_ VS_GUARDED_BY(mutex_) = false;

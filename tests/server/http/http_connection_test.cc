@@ -213,7 +213,7 @@ TEST_P(HttpConnectionTest, ClosesWhenAskedTo) {
 
 TEST_P(HttpConnectionTest, CutsOffAFileThatIsNotRead) {
   std::ofstream(folder_ / "web/large.txt") << std::string(size_t{32} << 20, 'x');
-  options_.limits.file = milliseconds(100);
+  options_.limits.file.silence = milliseconds(100);
   Start();
   WebClient client = Connect();
   client.Send(WebRequest("GET", "/large.txt"));

@@ -31,18 +31,19 @@ Result<std::unique_ptr<StreamSource>> WebTestService::Watch(const vs::Call& /*ca
 }
 
 HttpTest::HttpTest() {
+  using std::chrono::hours;
   router_.Unary(kLogin, &service_, &WebTestService::Login);
   router_.Stream(kWatch, &service_, &WebTestService::Watch);
   std::filesystem::create_directories(folder_ / "web/assets");
   std::ofstream(folder_ / "web/index.html") << "<p>hello";
   dispatcher_options_.inspection_period_ns = 1'000'000;
-  dispatcher_options_.unread_limit_ns = 3'600'000'000'000;
-  using std::chrono::hours;
+  dispatcher_options_.unread.silence = hours(1);
   options_.acceptor.address = {.host = "127.0.0.1", .port = 0};
   options_.web_root = folder_ / "web";
-  options_.limits = {.handshake = hours(1), .head = hours(1), .idle = hours(1), .file = hours(1)};
+  options_.limits = {
+      .handshake = hours(1), .head = hours(1), .idle = hours(1), .file = {.silence = hours(1)}};
   options_.limits.calls.request_time = hours(1);
-  options_.limits.calls.unread = hours(1);
+  options_.limits.calls.unread.silence = hours(1);
 }
 
 void HttpTest::Start(WebClient::Tls tls) {

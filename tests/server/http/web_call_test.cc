@@ -314,7 +314,7 @@ TEST_P(WebCallTest, DrainEndsStreamsInOrder) {
 }
 
 TEST_P(WebCallTest, CutsOffAStreamThatIsNotRead) {
-  dispatcher_options_.unread_limit_ns = 100'000'000;
+  options_.limits.calls.unread.silence = milliseconds(100);
   Start();
   WebClient client = Connect();
   client.Send(WebPost(kWatch, WatchBytes("large")));

@@ -8,6 +8,7 @@
 namespace vs::test {
 namespace {
 
+using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
 TEST_F(DispatcherTest, StreamSendsTheNewestOnceTheLastIsOut) {
@@ -124,7 +125,7 @@ TEST_F(DispatcherTest, RevokedSessionEndsAStreamThatNobodyReads) {
 }
 
 TEST_F(DispatcherTest, StreamThatNobodyReadsIsCutOff) {
-  Start({.unread_limit_ns = 5'000'000});
+  Start({.unread = {.silence = milliseconds(5)}});
   FakeChannel channel;
   const auto call = Open(channel);
   service_.numbers.Publish(1);
@@ -135,13 +136,31 @@ TEST_F(DispatcherTest, StreamThatNobodyReadsIsCutOff) {
 }
 
 TEST_F(DispatcherTest, AnswerThatNobodyReadsIsCutOff) {
-  Start({.unread_limit_ns = 5'000'000});
+  Start({.unread = {.silence = milliseconds(5)}});
   FakeChannel channel;
   const auto call = Begin(kLogin, channel);
   call->OnRequest(LoginBytes("maria"));
   EXPECT_TRUE(channel.status().ok());
   EXPECT_TRUE(WaitUntil([&] { return channel.aborts == 1; }));
   call->OnDone();
+}
+
+TEST_F(DispatcherTest, ThereIsMoreTimeForWhatIsLarge) {
+  Start({.unread = {.silence = milliseconds(5), .least_bytes_per_s = 1}});
+  FakeChannel large;
+  const auto slow = Begin(kExchange, large);
+  reflection::ServerReflectionRequest request;
+  request.set_host(std::string(10'000, 'x'));
+  slow->OnRequest(request.SerializeAsString());
+  ASSERT_TRUE(WaitUntil([&] { return large.messages().size() == 1; }));
+  FakeChannel empty;
+  const auto quick = Begin(kWhoAmI, empty);
+  quick->OnRequest("");
+  EXPECT_TRUE(WaitUntil([&] { return empty.aborts == 1; }));
+  EXPECT_EQ(large.aborts, 0);
+  quick->OnDone();
+  slow->OnSent(true);
+  slow->OnRequest(std::nullopt);
 }
 
 TEST_F(DispatcherTest, ReadingAStreamCountsAsUseOfTheSession) {
