@@ -9,6 +9,7 @@ import { ColorMapChoice } from '../view/ColorMapChoice';
 import classes from './cloud.module.css';
 import { colorings } from './cloudMaterial';
 import { type CloudOptions, CloudRenderer } from './cloudRenderer';
+import { useCloudMeasuring } from './useCloudMeasuring';
 import { webGl } from './webGl';
 
 interface Props {
@@ -17,13 +18,10 @@ interface Props {
   setMeasuring: (measuring: boolean) => void;
 }
 
-// A press that moves less than this is a click.
-const CLICK_PX = 4;
-
 /** The newest map as points in space. */
 export default function CloudPanel({ scene, measuring, setMeasuring }: Props) {
   const { t } = useTranslation('sequence');
-  const canvas = useRef<HTMLCanvasElement>(null);
+  const host = useRef<HTMLDivElement>(null);
   const renderer = useRef<CloudRenderer>(undefined);
   const [drawnBy] = useState(webGl);
   const [options, setOptions] = useState<CloudOptions>({
@@ -36,14 +34,14 @@ export default function CloudPanel({ scene, measuring, setMeasuring }: Props) {
   const change = (part: Partial<CloudOptions>) => setOptions((now) => ({ ...now, ...part }));
 
   useEffect(() => {
-    const element = canvas.current;
+    const element = host.current;
     if (!element) return;
     const made = new CloudRenderer(element, scene);
     renderer.current = made;
     const sizes = new ResizeObserver(([entry]) => {
       if (entry) made.resize(entry.contentRect.width, entry.contentRect.height);
     });
-    sizes.observe(element.parentElement ?? element);
+    sizes.observe(element);
     return () => {
       sizes.disconnect();
       made.end();
@@ -53,39 +51,7 @@ export default function CloudPanel({ scene, measuring, setMeasuring }: Props) {
 
   useEffect(() => renderer.current?.setOptions(options), [options, scene]);
 
-  useEffect(() => {
-    const element = canvas.current;
-    if (!element || !measuring) return;
-    const ended = new AbortController();
-    const { signal } = ended;
-    let pressed: PointerEvent | undefined;
-    const mark = (x: number, y: number) => {
-      const pixel = renderer.current?.pixelAt(x, y);
-      if (pixel) scene.mark(pixel);
-    };
-    element.addEventListener('pointerdown', (event) => (pressed = event), { signal });
-    element.addEventListener(
-      'pointerup',
-      (event) => {
-        const moved =
-          !pressed ||
-          Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) > CLICK_PX;
-        if (moved) return;
-        const box = element.getBoundingClientRect();
-        mark(event.clientX - box.left, event.clientY - box.top);
-      },
-      { signal },
-    );
-    // By keys: what is in the middle.
-    element.addEventListener(
-      'keydown',
-      (event) => {
-        if (event.key === 'Enter') mark(element.clientWidth / 2, element.clientHeight / 2);
-      },
-      { signal },
-    );
-    return () => ended.abort();
-  }, [scene, measuring]);
+  useCloudMeasuring(host, renderer, scene, measuring);
 
   if (drawnBy === 'none') return <Alert color="yellow">{t('cloud.noWebGl')}</Alert>;
   return (
@@ -130,9 +96,9 @@ export default function CloudPanel({ scene, measuring, setMeasuring }: Props) {
         <MeasureButton scene={scene} on={measuring} setOn={setMeasuring} />
       </Group>
       <div className={classes.box}>
-        <canvas
-          ref={canvas}
-          className={classes.canvas}
+        <div
+          ref={host}
+          className={classes.cloud}
           tabIndex={0}
           role="img"
           aria-label={t('cloud.label')}

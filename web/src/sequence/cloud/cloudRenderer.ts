@@ -27,19 +27,23 @@ export interface CloudOptions {
   step: number;
 }
 
-const AXES_M = 0.1;
-const HEIGHTS_PERIOD_MS = 500;
-const ZOOM_STEP = 1.25;
+const kAxesM = 0.1;
+const kHeightsPeriodMs = 500;
+const kZoomStep = 1.25;
 
-/** Draws the scene's newest map as points in space. Needs WebGL 2. */
+/**
+ * Draws the scene's newest map as points in space, on a canvas of its own in `host`: a canvas never
+ * gets another WebGL context than its first, and a page has a few of them only. Needs WebGL 2.
+ */
 export class CloudRenderer {
+  private readonly canvas = document.createElement('canvas');
   private readonly renderer: WebGLRenderer;
   private readonly world = new World();
   private readonly camera = new PerspectiveCamera(45, 1, 0.01, 1000);
   private readonly controls: OrbitControls;
   private readonly material = new CloudMaterial();
   private readonly points = new Points(new BufferGeometry(), this.material);
-  private readonly axes = new AxesHelper(AXES_M);
+  private readonly axes = new AxesHelper(kAxesM);
   private readonly ends = new Points(
     new BufferGeometry(),
     new PointsMaterial({ size: 9, sizeAttenuation: false, depthTest: false, color: '#ff4fd8' }),
@@ -58,15 +62,16 @@ export class CloudRenderer {
   private heightsAt_ms = -Infinity;
 
   constructor(
-    private readonly canvas: HTMLCanvasElement,
+    private readonly host: HTMLElement,
     private readonly scene: Scene,
   ) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: false });
+    this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: false });
+    host.append(this.canvas);
     this.renderer.setClearColor('#101113');
     this.camera.up.set(0, -1, 0); // y of the left view points down
-    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.addEventListener('change', () => this.renderSoon());
-    this.controls.listenToKeyEvents(canvas);
+    this.controls.listenToKeyEvents(host);
     for (const object of [this.points, this.ends, this.line]) object.frustumCulled = false;
     this.ends.renderOrder = this.line.renderOrder = 1;
     this.world.add(this.points, this.axes, this.ends, this.line);
@@ -95,6 +100,10 @@ export class CloudRenderer {
     }
     this.points.geometry.dispose();
     this.renderer.dispose();
+    // Not when the canvas happens to be collected: the browser would take a context that is in use.
+    this.renderer.forceContextLoss();
+    this.canvas.remove();
+    delete this.host.dataset.frame;
   }
 
   setOptions({ coloring, pointSize_px, axes, step }: CloudOptions): void {
@@ -127,8 +136,8 @@ export class CloudRenderer {
   }
 
   zoom(closer: boolean): void {
-    if (closer) this.controls.dollyIn(ZOOM_STEP);
-    else this.controls.dollyOut(ZOOM_STEP);
+    if (closer) this.controls.dollyIn(kZoomStep);
+    else this.controls.dollyOut(kZoomStep);
     this.controls.update();
   }
 
@@ -156,7 +165,7 @@ export class CloudRenderer {
     if (!this.placed) this.reset();
     this.placeMarks(map);
     this.render();
-    this.canvas.dataset.frame = String(map.frameNumber);
+    this.host.dataset.frame = String(map.frameNumber);
   }
 
   private showPicture(): void {
@@ -182,7 +191,7 @@ export class CloudRenderer {
   /** Colours by height run over the heights that there are, but for 2 % at either end. */
   private followHeights(map: MapFrame): void {
     const now_ms = performance.now();
-    if (now_ms - this.heightsAt_ms < HEIGHTS_PERIOD_MS) return;
+    if (now_ms - this.heightsAt_ms < kHeightsPeriodMs) return;
     this.heightsAt_ms = now_ms;
     const heights: number[] = [];
     for (let y = 0; y < map.height; y += 11) {

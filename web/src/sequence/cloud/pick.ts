@@ -6,7 +6,7 @@ import type { Pixel } from '../view/scene';
 export type Matrix4 = readonly number[];
 
 // A point is hit within this distance of it.
-const REACH_PX = 8;
+const kReachPx = 8;
 
 /**
  * The pixel of the map whose point is seen at (x, y) of a canvas of this size: of all points near
@@ -33,7 +33,7 @@ export function pick(
       const dx = (row(0, point.x_m, point.y_m, point.z_m) / w + 1) * (size.width / 2) - at.x;
       const dy = (1 - row(1, point.x_m, point.y_m, point.z_m) / w) * (size.height / 2) - at.y;
       const away_px = Math.hypot(dx, dy);
-      if (away_px > REACH_PX) continue;
+      if (away_px > kReachPx) continue;
       // Nearer to the eye is better; of one surface, nearer to the pointer.
       const rank = w * (1 + 0.02 * away_px);
       if (rank < nearest) {
