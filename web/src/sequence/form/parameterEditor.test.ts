@@ -19,6 +19,7 @@ const info = (init: Partial<Omit<ParameterInfo, '$typeName' | '$unknown'>>) =>
 /** A server whose answers wait for the test. */
 class FakeParameters implements ParameterCalls {
   stored: Record<string, number> = { 'match.p1': 10, 'match.p2': 100 };
+  max = 255;
   sent: string[] = [];
   frame = 40n;
   private answers: (() => void)[] = [];
@@ -27,7 +28,7 @@ class FakeParameters implements ParameterCalls {
     const parameters = Object.entries(this.stored).map(([path, value]) =>
       create(ParameterSchema, {
         path,
-        info: info({ name: path.split('.')[1] }),
+        info: info({ name: path.split('.')[1], max: this.max }),
         value: valueOf(ParameterType.INT, value),
       }),
     );
@@ -151,6 +152,14 @@ describe('ParameterEditor', () => {
     await calls.answer();
     expect(editor.field('match.p2')!.value).toBe(7);
     expect(editor.field('match.p1')).toBe(untouched);
+  });
+
+  it('shows a parameter whose description has changed', async () => {
+    const { calls, editor } = await loaded();
+    calls.max = 63;
+    void editor.load();
+    await calls.answer();
+    expect(editor.field('match.p1')!.info.max).toBe(63);
   });
 
   it('leaves out a list that was made before a change of its own', async () => {

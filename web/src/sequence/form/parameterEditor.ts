@@ -1,5 +1,6 @@
+import { equals } from '@bufbuild/protobuf';
 import type { Parameter } from '../../gen/visionserver/v1/parameter_pb';
-import type { ParameterInfo } from '../../gen/visionserver/v1/sequence_pb';
+import { type ParameterInfo, ParameterInfoSchema } from '../../gen/visionserver/v1/sequence_pb';
 import type { Value } from '../../gen/visionserver/v1/value_pb';
 import { Signal } from '../view/signal';
 import { type Plain, plainOf } from './value';
@@ -66,7 +67,7 @@ export class ParameterEditor {
       const plain = plainOf(value);
       if (!info || plain === undefined) continue;
       const known = this.fields.get(path);
-      const same = known && known.value === plain && known.info.doc === info.doc;
+      const same = known && known.value === plain && equals(ParameterInfoSchema, known.info, info);
       const fresh = { path, info, value: plain, draft: undefined, error: '' };
       fields.set(
         path,

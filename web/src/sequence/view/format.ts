@@ -1,9 +1,3 @@
-/** A length with three digits after the point below 10 m, two above: what the eye can use. */
-export function metres(value: number, locale: string): string {
-  const digits = Math.abs(value) < 10 ? 3 : 2;
-  return `${number(value, digits, locale)} m`;
-}
-
 /** With so many digits after the point, as the language writes numbers; infinite as "∞". */
 export function number(value: number, digits: number, locale: string): string {
   if (!Number.isFinite(value)) return value > 0 ? '∞' : '–∞';

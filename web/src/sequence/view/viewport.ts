@@ -27,10 +27,6 @@ export class Viewport {
     return this.picture;
   }
 
-  get fits(): boolean {
-    return this.place === undefined;
-  }
-
   setPicture(size: Size): void {
     if (size.width === this.picture.width && size.height === this.picture.height) return;
     // Not `size` itself, which may be a frame with all its pixels.
