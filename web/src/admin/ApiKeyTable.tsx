@@ -1,9 +1,9 @@
 import { Button, Group, Table, Text } from '@mantine/core';
 import { useState } from 'react';
 import { useTranslation } from 'react-i18next';
-import { api } from '../api/clients';
+import { pageApi } from '../api/pageClients';
 import type { ApiKey } from '../gen/visionserver/v1/user_pb';
-import { ConfirmDialog } from '../shell/ConfirmDialog';
+import ConfirmDialog from '../shell/ConfirmDialog';
 import { ErrorNote } from '../shell/ErrorNote';
 import { formatTime } from '../shell/format';
 import { PlusIcon } from '../shell/icons';
@@ -20,7 +20,7 @@ export function ApiKeyTable() {
   const [creating, setCreating] = useState(false);
   const [secret, setSecret] = useState<Secret>();
   const [revoking, setRevoking] = useState<ApiKey>();
-  const revoke = useChange((id: string) => api.users.revokeApiKey({ id }), {
+  const revoke = useChange((id: string) => pageApi.users.revokeApiKey({ id }), {
     onSuccess: () => setRevoking(undefined),
   });
   return (

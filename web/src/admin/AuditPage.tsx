@@ -4,9 +4,9 @@ import { useDebouncedValue } from '@mantine/hooks';
 import { keepPreviousData, useInfiniteQuery } from '@tanstack/react-query';
 import { useState } from 'react';
 import { useTranslation } from 'react-i18next';
-import { api } from '../api/clients';
+import { pageApi } from '../api/pageClients';
 import { ErrorNote } from '../shell/ErrorNote';
-import { formatTime, none } from '../shell/format';
+import { formatTime, kNone } from '../shell/format';
 import { usePageTitle } from '../shell/usePageTitle';
 import { WideTable } from '../shell/WideTable';
 
@@ -27,7 +27,7 @@ export default function AuditPage() {
   const entries = useInfiniteQuery({
     queryKey: ['admin', 'audit', settled],
     queryFn: ({ signal, pageParam }) =>
-      api.audit.listAuditEntries(
+      pageApi.audit.listAuditEntries(
         {
           user: settled.user.trim(),
           method: settled.method.trim(),
@@ -81,10 +81,10 @@ export default function AuditPage() {
           {rows.map((entry) => (
             <Table.Tr key={String(entry.number)}>
               <Table.Td style={{ whiteSpace: 'nowrap' }}>{formatTime(entry.time)}</Table.Td>
-              <Table.Td fw={600}>{entry.user || none}</Table.Td>
-              <Table.Td>{entry.address || none}</Table.Td>
+              <Table.Td fw={600}>{entry.user || kNone}</Table.Td>
+              <Table.Td>{entry.address || kNone}</Table.Td>
               <Table.Td title={entry.method}>{shortMethod(entry.method)}</Table.Td>
-              <Table.Td style={{ overflowWrap: 'anywhere' }}>{entry.subject || none}</Table.Td>
+              <Table.Td style={{ overflowWrap: 'anywhere' }}>{entry.subject || kNone}</Table.Td>
               <Table.Td>
                 {entry.ok ? (
                   t('ok')

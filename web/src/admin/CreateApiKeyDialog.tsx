@@ -2,7 +2,7 @@ import { timestampFromDate } from '@bufbuild/protobuf/wkt';
 import { Button, Group, Modal, NativeSelect, Stack, TextInput } from '@mantine/core';
 import { type FormEvent, useState } from 'react';
 import { useTranslation } from 'react-i18next';
-import { api } from '../api/clients';
+import { pageApi } from '../api/pageClients';
 import { Role } from '../gen/visionserver/v1/session_pb';
 import type { CreateApiKeyResponse } from '../gen/visionserver/v1/user_pb';
 import { ErrorNote } from '../shell/ErrorNote';
@@ -24,7 +24,7 @@ function CreateApiKeyForm({
   const roles = useRoleChoices([Role.ROBOT, Role.VIEWER]);
   const create = useChange(
     () =>
-      api.users.createApiKey({
+      pageApi.users.createApiKey({
         name,
         role,
         expires: expires ? timestampFromDate(new Date(expires)) : undefined,

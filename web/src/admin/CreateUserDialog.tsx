@@ -1,7 +1,7 @@
 import { Button, Group, Modal, NativeSelect, Stack, TextInput } from '@mantine/core';
 import { type FormEvent, useState } from 'react';
 import { useTranslation } from 'react-i18next';
-import { api } from '../api/clients';
+import { pageApi } from '../api/pageClients';
 import { Role } from '../gen/visionserver/v1/session_pb';
 import type { CreateUserResponse } from '../gen/visionserver/v1/user_pb';
 import { ErrorNote } from '../shell/ErrorNote';
@@ -21,7 +21,7 @@ function CreateUserForm({
   const [fullName, setFullName] = useState('');
   const [role, setRole] = useState(Role.VIEWER);
   const roles = useRoleChoices();
-  const create = useChange(() => api.users.createUser({ name, fullName, role }), {
+  const create = useChange(() => pageApi.users.createUser({ name, fullName, role }), {
     onSuccess: onCreated,
   });
   const submit = (event: FormEvent) => {

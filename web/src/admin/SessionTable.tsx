@@ -2,7 +2,7 @@ import { Button, Table, Text } from '@mantine/core';
 import { useTranslation } from 'react-i18next';
 import { api } from '../api/clients';
 import { ErrorNote, notifyError } from '../shell/ErrorNote';
-import { formatTime, none } from '../shell/format';
+import { formatTime, kNone } from '../shell/format';
 import { roleKey } from '../shell/roles';
 import { HiddenTh, WideTable } from '../shell/WideTable';
 import { useAllSessions, useChange } from './queries';
@@ -34,8 +34,8 @@ export function SessionTable() {
             <Table.Tr key={session.id}>
               <Table.Td fw={600}>{session.user}</Table.Td>
               <Table.Td>{t(`shell:${roleKey(session.role)}`)}</Table.Td>
-              <Table.Td>{session.address || none}</Table.Td>
-              <Table.Td>{session.client || none}</Table.Td>
+              <Table.Td>{session.address || kNone}</Table.Td>
+              <Table.Td>{session.client || kNone}</Table.Td>
               <Table.Td>{formatTime(session.lastUsed)}</Table.Td>
               <Table.Td>{formatTime(session.expires)}</Table.Td>
               <Table.Td ta="right">

@@ -1,34 +1,21 @@
 import { Button, Group, NativeSelect, Table, Text } from '@mantine/core';
 import { useState } from 'react';
 import { useTranslation } from 'react-i18next';
-import { api } from '../api/clients';
+import { pageApi } from '../api/pageClients';
 import { useSession } from '../api/session';
 import type { Role } from '../gen/visionserver/v1/session_pb';
 import type { User } from '../gen/visionserver/v1/user_pb';
-import { ConfirmDialog } from '../shell/ConfirmDialog';
+import ConfirmDialog from '../shell/ConfirmDialog';
 import { ErrorNote, notifyError } from '../shell/ErrorNote';
-import { formatTime, none } from '../shell/format';
+import { formatTime, kNone } from '../shell/format';
 import { PlusIcon } from '../shell/icons';
 import { HiddenTh, WideTable } from '../shell/WideTable';
+import { AccountState } from './AccountState';
 import { CreateUserDialog } from './CreateUserDialog';
 import { useChange, useUsers } from './queries';
 import { type Secret, SecretDialog } from './SecretDialog';
 import { UserActions, type UserAction } from './UserActions';
 import { useRoleChoices } from './useRoleChoices';
-
-/** State of an account in words: locked, disabled, waiting for its first password, or fine. */
-function AccountState({ user }: { user: User }) {
-  const { t } = useTranslation('admin');
-  if (user.disabled) return <Text size="sm">{t('disabled')}</Text>;
-  if (user.lockedUntil) {
-    return (
-      <Text size="sm" c="var(--vs-bad)">
-        {t('lockedUntil', { time: formatTime(user.lockedUntil) })}
-      </Text>
-    );
-  }
-  return <Text size="sm">{user.mustChangePassword ? t('oneTimePassword') : t('active')}</Text>;
-}
 
 /** All users, and what an administrator does with them. */
 export function UserTable() {
@@ -42,10 +29,10 @@ export function UserTable() {
 
   const update = useChange(
     ({ user, ...change }: { user: User; role?: Role; disabled?: boolean }) =>
-      api.users.updateUser({ name: user.name, etag: user.etag, ...change }),
+      pageApi.users.updateUser({ name: user.name, etag: user.etag, ...change }),
     { onError: notifyError },
   );
-  const unlock = useChange((name: string) => api.users.unlockUser({ name }), {
+  const unlock = useChange((name: string) => pageApi.users.unlockUser({ name }), {
     onError: notifyError,
   });
   const showPassword = (name: string, password: string) =>
@@ -53,9 +40,9 @@ export function UserTable() {
   const confirmed = useChange(
     async ({ action, user }: { action: 'delete' | 'resetPassword'; user: User }) => {
       if (action === 'delete') {
-        await api.users.deleteUser({ name: user.name });
+        await pageApi.users.deleteUser({ name: user.name });
       } else {
-        const answer = await api.users.resetPassword({ name: user.name });
+        const answer = await pageApi.users.resetPassword({ name: user.name });
         showPassword(user.name, answer.oneTimePassword);
       }
     },
@@ -107,7 +94,7 @@ export function UserTable() {
                   </Text>
                 )}
               </Table.Td>
-              <Table.Td>{user.fullName || none}</Table.Td>
+              <Table.Td>{user.fullName || kNone}</Table.Td>
               <Table.Td>
                 <NativeSelect
                   size="xs"

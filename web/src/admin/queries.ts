@@ -1,12 +1,12 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
-import { api } from '../api/clients';
+import { pageApi } from '../api/pageClients';
 
 const kRefreshMs = 5000;
 
 export function useUsers() {
   return useQuery({
     queryKey: ['admin', 'users'],
-    queryFn: ({ signal }) => api.users.listUsers({}, { signal }),
+    queryFn: ({ signal }) => pageApi.users.listUsers({}, { signal }),
     refetchInterval: kRefreshMs,
   });
 }
@@ -14,7 +14,7 @@ export function useUsers() {
 export function useAllSessions() {
   return useQuery({
     queryKey: ['admin', 'sessions'],
-    queryFn: ({ signal }) => api.users.listSessions({}, { signal }),
+    queryFn: ({ signal }) => pageApi.users.listSessions({}, { signal }),
     refetchInterval: kRefreshMs,
   });
 }
@@ -22,7 +22,7 @@ export function useAllSessions() {
 export function useApiKeys() {
   return useQuery({
     queryKey: ['admin', 'keys'],
-    queryFn: ({ signal }) => api.users.listApiKeys({}, { signal }),
+    queryFn: ({ signal }) => pageApi.users.listApiKeys({}, { signal }),
     refetchInterval: kRefreshMs,
   });
 }

@@ -7,6 +7,7 @@ import { SequenceService } from '../gen/visionserver/v1/sequence_pb';
 import { ErrorDetailSchema } from '../gen/visionserver/v1/error_pb';
 import { freshTab, logIn, serve } from '../test/fakeServer';
 import { api } from './clients';
+import { pageApi } from './pageClients';
 import { useSession } from './session';
 
 vi.mock('@connectrpc/connect-web', async () => (await import('../test/fakeServer')).connectWeb);
@@ -183,7 +184,7 @@ describe('the time limit', () => {
     const calls = [
       api.sequences.getSequence({ id: 'depth' }).catch(note),
       api.sequences.getSequence({ id: 'depth' }, { timeoutMs: 3000 }).catch(note),
-      api.results.queryResults({ sql: 'SELECT 1' }).catch(note),
+      pageApi.results.queryResults({ sql: 'SELECT 1' }).catch(note),
     ];
     await vi.advanceTimersByTimeAsync(3000);
     expect(ended).toEqual([expect.stringContaining('GetSequence had no answer within 3 s')]);

@@ -3,7 +3,7 @@ import { useTranslation } from 'react-i18next';
 import { type Alarm, AlarmSeverity } from '../gen/visionserver/v1/system_pb';
 import { formatTime } from '../shell/format';
 import { CheckIcon } from '../shell/icons';
-import { StateMark } from './StateMark';
+import { StateMark } from '../shell/StateMark';
 
 /** What needs attention, gravest first; says so when nothing does. */
 export function AlarmList({ alarms }: { alarms: Alarm[] }) {

@@ -1,12 +1,12 @@
 import { Table, Text } from '@mantine/core';
 import { useTranslation } from 'react-i18next';
 import type { Camera } from '../gen/visionserver/v1/camera_pb';
-import { formatNumber, none } from '../shell/format';
+import { formatNumber, kNone } from '../shell/format';
 import { WideTable } from '../shell/WideTable';
-import { StateMark } from './StateMark';
+import { StateMark } from '../shell/StateMark';
 import { describeCameraState } from './states';
 
-const count = (value: bigint | undefined) => (value === undefined ? none : formatNumber(value));
+const count = (value: bigint | undefined) => (value === undefined ? kNone : formatNumber(value));
 
 /** A counter of something bad: it stands out once it is not zero. */
 function BadCount({ value }: { value: bigint | undefined }) {
@@ -62,7 +62,7 @@ export function CameraTable({ cameras }: { cameras: Camera[] }) {
                 )}
               </Table.Td>
               <Table.Td ta="right">
-                {counters ? formatNumber(counters.framesPerSecond, 1) : none}
+                {counters ? formatNumber(counters.framesPerSecond, 1) : kNone}
               </Table.Td>
               <Table.Td ta="right">{count(counters?.frames)}</Table.Td>
               <Table.Td ta="right">
@@ -77,7 +77,7 @@ export function CameraTable({ cameras }: { cameras: Camera[] }) {
               <Table.Td ta="right">
                 <BadCount value={counters?.reconnects} />
               </Table.Td>
-              <Table.Td>{camera.usedBy.join(', ') || none}</Table.Td>
+              <Table.Td>{camera.usedBy.join(', ') || kNone}</Table.Td>
             </Table.Tr>
           );
         })}

@@ -1,11 +1,11 @@
-import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
+import { useQuery } from '@tanstack/react-query';
 import { api } from '../api/clients';
+import { pageApi } from '../api/pageClients';
 import {
   type Sequence,
   SequenceRunState,
   type SequenceState,
 } from '../gen/visionserver/v1/sequence_pb';
-import { notifyError } from '../shell/ErrorNote';
 
 // Unary calls, not watch streams: a browser opens six connections to a server at most, over all its
 // tabs, and the one stream of a tab is for pictures. Hidden tabs do not poll.
@@ -43,7 +43,7 @@ export function useSequences() {
 export function useCameras() {
   return useQuery({
     queryKey: ['overview', 'cameras'],
-    queryFn: ({ signal }) => api.cameras.listCameras({}, { signal }),
+    queryFn: ({ signal }) => pageApi.cameras.listCameras({}, { signal }),
     refetchInterval: kFastMs,
   });
 }
@@ -69,16 +69,5 @@ export function useStatistics() {
     queryKey: ['overview', 'statistics'],
     queryFn: ({ signal }) => api.system.getStatistics({}, { signal }),
     refetchInterval: kSlowMs,
-  });
-}
-
-/** Starts or stops a sequence; the table shows the outcome at once. */
-export function useSetRunning() {
-  const client = useQueryClient();
-  return useMutation({
-    mutationFn: ({ id, run }: { id: string; run: boolean }) =>
-      run ? api.sequences.startSequence({ id }) : api.sequences.stopSequence({ id }),
-    onError: notifyError,
-    onSettled: () => client.invalidateQueries({ queryKey: ['overview'] }),
   });
 }

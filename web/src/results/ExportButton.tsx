@@ -2,9 +2,11 @@ import { Button, Group, Text } from '@mantine/core';
 import { useEffect, useRef, useState } from 'react';
 import { useTranslation } from 'react-i18next';
 
-import { api } from '../api/clients';
+import { pageApi } from '../api/pageClients';
 import { messageOf } from '../api/errors';
-import { bytesText, csvName, download, gatherCsv } from './csv';
+import { download } from '../shell/download';
+import { formatBytes } from '../shell/format';
+import { csvName, gatherCsv } from './csv';
 import { toFilter, type Selection } from './filter';
 
 /** Saves all selected results, up to now, as one CSV file. */
@@ -23,11 +25,11 @@ export function ExportButton({ selection }: { selection: Selection }) {
     setBytes(0);
     try {
       const now = new Date();
-      const pieces = api.results.exportResults(
+      const pieces = pageApi.results.exportResults(
         { filter: toFilter(selection, now.getTime()) },
         { signal: controller.signal },
       );
-      download(await gatherCsv(pieces, setBytes), csvName(now));
+      download(csvName(now), await gatherCsv(pieces, setBytes));
     } catch (error) {
       if (!controller.signal.aborted) setFailure(messageOf(error));
     } finally {
@@ -38,7 +40,7 @@ export function ExportButton({ selection }: { selection: Selection }) {
   return (
     <Group gap="sm">
       <Text role="status" size="sm">
-        {bytes !== undefined && t('exporting', { size: bytesText(bytes) })}
+        {bytes !== undefined && t('exporting', { size: formatBytes(bytes) })}
       </Text>
       {failure !== '' && (
         <Text role="alert" size="sm">

@@ -6,7 +6,7 @@ import { useTranslation } from 'react-i18next';
 import uPlot from 'uplot';
 
 import { ErrorNote } from '../shell/ErrorNote';
-import { chartData, chartOptions, heightPx } from './chart';
+import { chartData, chartOptions, kHeightPx } from './chart';
 import { toCondition, type Selection } from './filter';
 import { bucketsOf, fieldOverTime, type Bucket } from './statements';
 import { useSql } from './useResults';
@@ -70,7 +70,7 @@ function Plot({ buckets, field }: { buckets: Bucket[]; field: string }) {
     };
     const chart = new uPlot(chartOptions(parent.clientWidth, dark, names), data, parent);
     const resized = new ResizeObserver(() =>
-      chart.setSize({ width: parent.clientWidth, height: heightPx }),
+      chart.setSize({ width: parent.clientWidth, height: kHeightPx }),
     );
     resized.observe(parent);
     return () => {

@@ -2,7 +2,7 @@ import { Drawer, Stack, Table, Text, Title } from '@mantine/core';
 import { useQuery } from '@tanstack/react-query';
 import { useTranslation } from 'react-i18next';
 
-import { api } from '../api/clients';
+import { pageApi } from '../api/pageClients';
 import type { Result } from '../gen/visionserver/v1/result_pb';
 import { ErrorNote } from '../shell/ErrorNote';
 import { ClassBadge } from './ClassBadge';
@@ -22,7 +22,7 @@ export function ResultDetails({ resultId, onClose }: Props) {
   const { t } = useTranslation('results');
   const found = useQuery({
     queryKey: ['results', 'one', resultId],
-    queryFn: ({ signal }) => api.results.getResult({ resultId }, { signal }),
+    queryFn: ({ signal }) => pageApi.results.getResult({ resultId }, { signal }),
     enabled: resultId !== '',
     staleTime: Infinity, // a stored result never changes
   });

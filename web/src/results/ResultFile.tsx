@@ -3,10 +3,11 @@ import { useQuery } from '@tanstack/react-query';
 import { useCallback, useMemo } from 'react';
 import { useTranslation } from 'react-i18next';
 
-import { api } from '../api/clients';
+import { pageApi } from '../api/pageClients';
 import { messageOf } from '../api/errors';
 import type { GetResultFileResponse } from '../gen/visionserver/v1/result_pb';
-import { bytesText, download } from './csv';
+import { download } from '../shell/download';
+import { formatBytes } from '../shell/format';
 import { Grey16Picture } from './Grey16Picture';
 import { isGrey16 } from './png16';
 
@@ -15,7 +16,7 @@ export function ResultFile({ resultId, field }: { resultId: string; field: strin
   const { t } = useTranslation('results');
   const file = useQuery({
     queryKey: ['results', 'file', resultId, field],
-    queryFn: ({ signal }) => api.results.getResultFile({ resultId, field }, { signal }),
+    queryFn: ({ signal }) => pageApi.results.getResultFile({ resultId, field }, { signal }),
     staleTime: Infinity,
     gcTime: 0, // files are large
     retry: false,
@@ -41,8 +42,8 @@ function FileShown({ field, file }: { field: string; file: GetResultFileResponse
         ) : (
           <Picture blob={blob} label={field} />
         ))}
-      <Button variant="default" size="xs" onClick={() => download(blob, file.fileName)}>
-        {t('download', { name: file.fileName })} ({bytesText(blob.size)})
+      <Button variant="default" size="xs" onClick={() => download(file.fileName, blob)}>
+        {t('download', { name: file.fileName })} ({formatBytes(blob.size)})
       </Button>
     </Stack>
   );

@@ -5,7 +5,7 @@ import type { Result } from '../gen/visionserver/v1/result_pb';
 import { ErrorNote } from '../shell/ErrorNote';
 import { ClassBadge } from './ClassBadge';
 import { stateWords, type Selection } from './filter';
-import { newerLimit } from './statements';
+import { kNewerLimit } from './statements';
 import { localText, utcText } from './time';
 import { useNewerCount, type useResultPages } from './useResults';
 import { valueText } from './values';
@@ -79,7 +79,7 @@ function NewerLine({ selection, nowMs, results, onRefresh }: NewerProps) {
     <div role="status">
       {count > 0 && (
         <Button variant="light" fullWidth onClick={onRefresh}>
-          {count < newerLimit ? t('newer', { count }) : t('newerMany', { count: newerLimit })}
+          {count < kNewerLimit ? t('newer', { count }) : t('newerMany', { count: kNewerLimit })}
         </Button>
       )}
     </div>

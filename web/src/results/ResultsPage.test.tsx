@@ -11,6 +11,7 @@ import { asked, held } from './fakeResults';
 import ResultsPage from './ResultsPage';
 
 vi.mock('../api/clients', async () => ({ api: (await import('./fakeResults')).fakeApi }));
+vi.mock('../api/pageClients', async () => ({ pageApi: (await import('./fakeResults')).fakeApi }));
 
 function Address() {
   return <output>{useLocation().search}</output>;

@@ -2,7 +2,7 @@ import { Button, Group, NativeSelect, NumberInput, Stack, Textarea } from '@mant
 import { useEffect, useRef, useState } from 'react';
 import { useTranslation } from 'react-i18next';
 
-import { api } from '../api/clients';
+import { pageApi } from '../api/pageClients';
 import type { QueryResultsResponse } from '../gen/visionserver/v1/result_pb';
 import { ErrorNote } from '../shell/ErrorNote';
 import { SqlAnswer } from './SqlAnswer';
@@ -33,7 +33,7 @@ export function SqlBox() {
     setBusy(true);
     const started = performance.now();
     const request = { sql, maxRows, timeout: { seconds: BigInt(seconds) } };
-    const result = await api.results.queryResults(request, { signal: controller.signal }).then(
+    const result = await pageApi.results.queryResults(request, { signal: controller.signal }).then(
       (answer) => ({ answer }),
       (error: unknown) => ({ error }),
     );

@@ -2,6 +2,7 @@ import { Group, Paper, Text } from '@mantine/core';
 import { useTranslation } from 'react-i18next';
 
 import { ErrorNote } from '../shell/ErrorNote';
+import { formatNumber } from '../shell/format';
 import { toCondition, type Selection } from './filter';
 import { countClasses, shareText, yieldOf, type Yield } from './statements';
 import { useSql } from './useResults';
@@ -10,14 +11,14 @@ const words = ['pass', 'warn', 'fail', 'undefined'] as const;
 
 /** How many of the selected results passed; percentages are of those that were judged. */
 export function YieldCounters({ selection, nowMs }: { selection: Selection; nowMs: number }) {
-  const { t, i18n } = useTranslation('results');
+  const { t } = useTranslation('results');
   const counted = useSql(
     ['yield', selection, nowMs],
     () => countClasses(toCondition(selection, nowMs)),
     (answer) => yieldOf(answer.table),
   );
   if (counted.isError) return <ErrorNote error={counted.error} />;
-  const number = (word: keyof Yield) => counted.data?.[word].toLocaleString(i18n.language) ?? '…';
+  const number = (word: keyof Yield) => (counted.data ? formatNumber(counted.data[word]) : '…');
   return (
     <Group component="dl" gap="sm" m={0} aria-label={t('yield')} aria-busy={counted.isFetching}>
       <Counter label={t('total')} value={number('total')} />

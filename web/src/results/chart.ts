@@ -4,7 +4,7 @@ import type uPlot from 'uplot';
 import type { Bucket } from './statements';
 import { classWords } from './filter';
 
-export const heightPx = 360;
+export const kHeightPx = 360;
 
 type ClassWord = (typeof classWords)[number];
 
@@ -39,7 +39,7 @@ export function chartOptions(
   const grid = { stroke: dark ? '#424242' : '#dee2e6' };
   return {
     width: widthPx,
-    height: heightPx,
+    height: kHeightPx,
     axes: [
       { stroke, grid },
       { stroke, grid, size: 80 },

@@ -23,21 +23,3 @@ export function csvName(now: Date): string {
   const date = `${now.getFullYear()}-${two(now.getMonth() + 1)}-${two(now.getDate())}`;
   return `results ${date} ${two(now.getHours())}.${two(now.getMinutes())}.csv`;
 }
-
-// Hands a file to the user.
-export function download(file: Blob, name: string): void {
-  const address = URL.createObjectURL(file);
-  const link = document.createElement('a');
-  link.href = address;
-  link.download = name;
-  link.click();
-  // The browser has begun to read by then; without this the file stays in memory.
-  setTimeout(() => URL.revokeObjectURL(address), 10_000);
-}
-
-// "3.4 MB".
-export function bytesText(bytes: number): string {
-  if (bytes < 1000) return `${bytes} B`;
-  if (bytes < 1e6) return `${(bytes / 1e3).toFixed(1)} kB`;
-  return `${(bytes / 1e6).toFixed(1)} MB`;
-}

@@ -14,7 +14,7 @@ const lengthsMs: Partial<Record<Range, number>> = {
   '1h': 3_600_000,
   '1d': 24 * 3_600_000,
 };
-const defaultRange: Range = '1h';
+const kDefaultRange: Range = '1h';
 
 // The words of the store and of the address.
 export const classWords = ['undefined', 'pass', 'warn', 'fail'] as const;
@@ -34,7 +34,7 @@ export interface Selection {
 }
 
 export const everything: Selection = {
-  range: defaultRange,
+  range: kDefaultRange,
   job: '',
   part: '',
   resultClass: ResultClass.UNSPECIFIED,
@@ -48,7 +48,7 @@ function instantOf(text: string | null): number | undefined {
 
 // What the address does not say, or says wrongly, has its default: a mistyped link still opens.
 export function readSelection(address: URLSearchParams): Selection {
-  const range = ranges.find((name) => name === address.get('range')) ?? defaultRange;
+  const range = ranges.find((name) => name === address.get('range')) ?? kDefaultRange;
   const resultClass = classWords.findIndex((word) => word === address.get('class'));
   const state = stateWords.findIndex((word) => word === address.get('state'));
   return {
@@ -70,7 +70,7 @@ export function writeSelection(selection: Selection, address: URLSearchParams): 
   const custom = (ms?: number) =>
     range === 'custom' && ms !== undefined ? new Date(ms).toISOString() : '';
   const entries: Record<string, string> = {
-    range: range === defaultRange ? '' : range,
+    range: range === kDefaultRange ? '' : range,
     from: custom(fromMs),
     until: custom(untilMs),
     job,
@@ -118,7 +118,7 @@ export interface Condition {
   arguments: ValueInit[];
 }
 
-const nsPerMs = 1_000_000n;
+const kNsPerMs = 1_000_000n;
 
 // The same for QueryResults; with `afterNumber` only results stored later.
 export function toCondition(selection: Selection, nowMs: number, afterNumber?: bigint): Condition {
@@ -134,8 +134,8 @@ export function toCondition(selection: Selection, nowMs: number, afterNumber?: b
   if (selection.state !== ResultState.UNSPECIFIED) {
     parts.push(['result_state =', stringValue(stateWords[selection.state])]);
   }
-  if (fromMs !== undefined) parts.push(['creation_time_ns >=', intValue(BigInt(fromMs) * nsPerMs)]);
-  if (untilMs !== undefined) parts.push(['creation_time_ns <', intValue(BigInt(untilMs) * nsPerMs)]);
+  if (fromMs !== undefined) parts.push(['creation_time_ns >=', intValue(BigInt(fromMs) * kNsPerMs)]);
+  if (untilMs !== undefined) parts.push(['creation_time_ns <', intValue(BigInt(untilMs) * kNsPerMs)]);
   return {
     sql: parts.length === 0 ? 'true' : parts.map(([text], i) => `${text} ?${i + 1}`).join(' AND '),
     arguments: parts.map(([, value]) => value),

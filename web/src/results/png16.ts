@@ -8,13 +8,13 @@ export interface Grey16 {
   values: Uint16Array;
 }
 
-const signature = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
+const kSignature = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
 
 /** Whether these bytes are a PNG file of 16-bit grey values, not interlaced. */
 export function isGrey16(file: Uint8Array): boolean {
   return (
     file.length > 33 &&
-    signature.every((byte, i) => file[i] === byte) &&
+    kSignature.every((byte, i) => file[i] === byte) &&
     file[24] === 16 && // bits
     file[25] === 0 && // grey
     file[28] === 0 // not interlaced

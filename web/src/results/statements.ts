@@ -14,13 +14,13 @@ export const newestNumber: SqlStatement = {
   arguments: [],
 };
 
-export const newerLimit = 1000;
+export const kNewerLimit = 1000;
 
-// How many results match, up to `newerLimit`. With a condition on `number` only those behind it are
+// How many results match, up to `kNewerLimit`. With a condition on `number` only those behind it are
 // looked at, however many there are in all.
 export function countSome({ sql, arguments: values }: Condition): SqlStatement {
   return {
-    sql: `SELECT count(*) FROM (SELECT 1 FROM result WHERE ${sql} LIMIT ${newerLimit})`,
+    sql: `SELECT count(*) FROM (SELECT 1 FROM result WHERE ${sql} LIMIT ${kNewerLimit})`,
     arguments: values,
   };
 }
@@ -57,9 +57,9 @@ export function shareText(count: number, counts: Yield): string {
   return judged === 0 ? '' : `${(Math.floor((count / judged) * 1000) / 10).toFixed(1)} %`;
 }
 
-const buckets = 500;
+const kBuckets = 500;
 
-// A field over time in at most `buckets` steps of equal length, with the least and the greatest
+// A field over time in at most `kBuckets` steps of equal length, with the least and the greatest
 // value of each class in each: however many results there are, no outlier is lost. Columns: time in
 // ns, class, least, greatest, count.
 export function fieldOverTime(condition: Condition, field: string): SqlStatement {
@@ -68,7 +68,7 @@ export function fieldOverTime(condition: Condition, field: string): SqlStatement
     sql: `
       WITH span AS MATERIALIZED (
         SELECT min(creation_time_ns) AS first_ns,
-               (max(creation_time_ns) - min(creation_time_ns)) / ${buckets} + 1 AS step_ns
+               (max(creation_time_ns) - min(creation_time_ns)) / ${kBuckets} + 1 AS step_ns
         FROM result WHERE ${condition.sql}),
       point AS (
         SELECT creation_time_ns AS time_ns, result_class,

@@ -1,16 +1,16 @@
 // What the page asks the server for, as queries that TanStack Query keeps and repeats.
 import { useInfiniteQuery, useQuery, type UseQueryResult } from '@tanstack/react-query';
 
-import { api } from '../api/clients';
+import { pageApi } from '../api/pageClients';
 import type { QueryResultsResponse, Result } from '../gen/visionserver/v1/result_pb';
 import { toCondition, toFilter, type Selection } from './filter';
 import { countSome, newestNumber, type SqlStatement } from './statements';
 import { toNumber } from './values';
 
-const pageSize = 100;
-const pollMs = 5000;
-const timeout = { seconds: 10n };
-const timeoutMs = 12_000; // the server's own limit says why
+const kPageSize = 100;
+const kPollMs = 5000;
+// The server's own limit, which says why, comes before that of the call.
+const kTimeout = { seconds: 10n };
 
 // One statement of this page; `key` tells it apart from others.
 export function useSql<T>(
@@ -23,9 +23,9 @@ export function useSql<T>(
     queryKey: ['results', 'sql', ...key],
     queryFn: async ({ signal }) =>
       read(
-        await api.results.queryResults(
-          { ...statement(), maxRows: 10_000, timeout },
-          { signal, timeoutMs },
+        await pageApi.results.queryResults(
+          { ...statement(), maxRows: 10_000, timeout: kTimeout },
+          { signal },
         ),
       ),
     ...options,
@@ -38,9 +38,9 @@ export function useResultPages(selection: Selection, nowMs: number) {
     queryKey: ['results', 'list', selection, nowMs],
     initialPageParam: '',
     queryFn: ({ pageParam, signal }) =>
-      api.results.listResults(
-        { filter: toFilter(selection, nowMs), pageSize, pageToken: pageParam },
-        { signal, timeoutMs },
+      pageApi.results.listResults(
+        { filter: toFilter(selection, nowMs), pageSize: kPageSize, pageToken: pageParam },
+        { signal },
       ),
     getNextPageParam: (page) => page.nextPageToken || undefined,
   });
@@ -56,7 +56,7 @@ export function useNewerCount(selection: Selection, nowMs: number, shown: Result
     ['newer', selection, nowMs, after],
     () => countSome(toCondition(selection, nowMs, BigInt(after))),
     numberOf,
-    { enabled: newest.isSuccess, refetchInterval: pollMs },
+    { enabled: newest.isSuccess, refetchInterval: kPollMs },
   );
   return newer.data ?? 0;
 }

@@ -1,9 +1,13 @@
-import { Badge, Group, Text, Title } from '@mantine/core';
+import { Group, Text, Title } from '@mantine/core';
+import { useQueryClient } from '@tanstack/react-query';
 import { useTranslation } from 'react-i18next';
-import { SequenceRunState, type SequenceState } from '../gen/visionserver/v1/sequence_pb';
+import type { SequenceState } from '../gen/visionserver/v1/sequence_pb';
+import { describeRunState } from '../shell/runState';
+import { StartStop } from '../shell/StartStop';
+import { StateMark } from '../shell/StateMark';
 import classes from './page.module.css';
-import { StartStop } from './StartStop';
 import { StreamFigures } from './StreamFigures';
+import { stateKey } from './useSequenceState';
 import type { LiveScene } from './view/liveScene';
 
 interface Props {
@@ -13,30 +17,25 @@ interface Props {
   scene: LiveScene;
 }
 
-const states = {
-  [SequenceRunState.UNSPECIFIED]: ['unknown', 'gray'],
-  [SequenceRunState.STOPPED]: ['stopped', 'gray'],
-  [SequenceRunState.STARTING]: ['starting', 'blue'],
-  [SequenceRunState.RUNNING]: ['running', 'green'],
-  [SequenceRunState.DEGRADED]: ['degraded', 'yellow'],
-  [SequenceRunState.STOPPING]: ['stopping', 'blue'],
-  [SequenceRunState.FAULT]: ['fault', 'red'],
-} as const;
-
 /** What the sequence is, whether it runs, and what really reaches this screen. */
 export function SequenceHeader({ id, description, state, scene }: Props) {
-  const { t } = useTranslation('sequence');
-  const [name, color] = states[state?.state ?? SequenceRunState.UNSPECIFIED];
+  const { t } = useTranslation('shell');
+  const queries = useQueryClient();
+  const { key, level } = describeRunState(state?.state);
   const error = state?.lastError;
   return (
     <>
       <Group gap="md" wrap="nowrap">
         <Title order={1}>{id}</Title>
-        {/* The border has the colour; green or yellow text could not be read on white. */}
-        <Badge color={color} variant="outline" c="var(--mantine-color-text)" data-testid="run-state" miw={90}>
-          {t(`state.${name}`)}
-        </Badge>
-        <StartStop id={id} state={state} />
+        <StateMark level={level} label={t(key)} />
+        {state && (
+          <StartStop
+            id={id}
+            state={state.state}
+            size="compact-sm"
+            onSettled={(next) => next && queries.setQueryData(stateKey(id), next)}
+          />
+        )}
         <Text size="sm" c="dimmed" truncate flex={1} title={description}>
           {description}
         </Text>

@@ -2,10 +2,11 @@ import { Loader, Tabs } from '@mantine/core';
 import { lazy, Suspense, useEffect, useMemo, useState } from 'react';
 import { useTranslation } from 'react-i18next';
 import type { BlockType, Sequence, SequenceSpec } from '../gen/visionserver/v1/sequence_pb';
+import { hasBlocks } from '../shell/runState';
 import { mainMap, mainPicture, outputsOf } from './outputs';
 import classes from './page.module.css';
 import { SequenceHeader } from './SequenceHeader';
-import { isRunning, useSequenceState } from './useSequenceState';
+import { useSequenceState } from './useSequenceState';
 import { LiveScene } from './view/liveScene';
 import { PicturePanel } from './view/PicturePanel';
 
@@ -88,7 +89,7 @@ export function SequenceView({ sequence: { id }, spec, blockTypes }: Props) {
               sequence={id}
               spec={spec}
               blockTypes={blockTypes}
-              running={isRunning(state?.state)}
+              running={hasBlocks(state?.state)}
               filter={filter}
               setFilter={setFilter}
             />

@@ -1,22 +1,14 @@
 import { useQuery } from '@tanstack/react-query';
 import { api } from '../api/clients';
-import { SequenceRunState } from '../gen/visionserver/v1/sequence_pb';
+
+/** Under what the state of a sequence is remembered. */
+export const stateKey = (id: string) => ['sequence-state', id];
 
 /** What a sequence is doing, asked once a second while the tab is visible. */
 export function useSequenceState(id: string) {
   return useQuery({
-    queryKey: ['sequence-state', id],
+    queryKey: stateKey(id),
     queryFn: ({ signal }) => api.sequences.getSequenceState({ id }, { signal }),
     refetchInterval: 1000,
   });
-}
-
-/** Has blocks that work, or are about to. */
-export function isRunning(state: SequenceRunState | undefined): boolean {
-  return (
-    state === SequenceRunState.STARTING ||
-    state === SequenceRunState.RUNNING ||
-    state === SequenceRunState.DEGRADED ||
-    state === SequenceRunState.STOPPING
-  );
 }

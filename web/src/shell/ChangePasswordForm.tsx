@@ -6,7 +6,7 @@ import { api } from '../api/clients';
 import { ErrorNote } from './ErrorNote';
 
 /** Sets the user's own password. `oldPassword`: already known, so it is not asked for again. */
-export function ChangePasswordForm({
+export default function ChangePasswordForm({
   user,
   oldPassword,
   onDone,

@@ -3,7 +3,7 @@ import { useTranslation } from 'react-i18next';
 import { ErrorNote } from './ErrorNote';
 
 /** Asks before something that cannot be undone. Escape and the first focus mean "cancel". */
-export function ConfirmDialog({
+export default function ConfirmDialog({
   opened,
   title,
   text,

@@ -1,14 +1,16 @@
-import { Button, Menu, Modal } from '@mantine/core';
+import { Button, Loader, Menu, Modal } from '@mantine/core';
 import { useMutation } from '@tanstack/react-query';
-import { useState } from 'react';
+import { lazy, Suspense, useState } from 'react';
 import { useTranslation } from 'react-i18next';
 import { api } from '../api/clients';
 import { queryClient } from '../api/queryClient';
 import { useSession } from '../api/session';
-import { ChangePasswordForm } from './ChangePasswordForm';
 import { UserIcon } from './icons';
 import { showMessage } from './messages';
 import { roleKey } from './roles';
+
+// Seldom wanted, so it does not come with every page.
+const ChangePasswordForm = lazy(() => import('./ChangePasswordForm'));
 
 /** Who is logged in, and what they do with their own account. */
 export function UserMenu() {
@@ -48,7 +50,9 @@ export function UserMenu() {
         title={t('password.title')}
         closeButtonProps={{ 'aria-label': t('close') }}
       >
-        <ChangePasswordForm user={login.user} onDone={changed} />
+        <Suspense fallback={<Loader />}>
+          <ChangePasswordForm user={login.user} onDone={changed} />
+        </Suspense>
       </Modal>
     </>
   );

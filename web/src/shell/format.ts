@@ -2,7 +2,7 @@ import { type Timestamp, timestampDate } from '@bufbuild/protobuf/wkt';
 import { i18next } from '../i18n';
 
 /** What stands where there is no value. */
-export const none = '–';
+export const kNone = '–';
 
 /** A number with at most `digits` decimals, in the language of the page. */
 export function formatNumber(value: number | bigint, digits = 0): string {
@@ -13,7 +13,7 @@ export function formatNumber(value: number | bigint, digits = 0): string {
 }
 
 /** "12.3 GB", in powers of ten as disks are sold. */
-export function formatBytes(bytes: bigint): string {
+export function formatBytes(bytes: bigint | number): string {
   const units = ['B', 'kB', 'MB', 'GB', 'TB', 'PB'];
   let value = Number(bytes);
   let unit = 0;
@@ -21,12 +21,12 @@ export function formatBytes(bytes: bigint): string {
     value /= 1000;
     unit += 1;
   }
-  return `${formatNumber(value, unit > 2 ? 1 : 0)} ${units[unit]}`;
+  return `${formatNumber(value, unit > 0 ? 1 : 0)} ${units[unit]}`;
 }
 
 /** Date and time to the second, in this machine's time zone. */
 export function formatTime(time: Timestamp | undefined): string {
-  if (!time) return none;
+  if (!time) return kNone;
   return new Intl.DateTimeFormat(i18next.language, {
     dateStyle: 'medium',
     timeStyle: 'medium',

@@ -51,6 +51,24 @@ export const en = {
     robot: 'Robot',
     unknown: 'Unknown role',
   },
+  runState: {
+    unknown: 'Unknown',
+    stopped: 'Stopped',
+    starting: 'Starting',
+    running: 'Running',
+    degraded: 'Degraded',
+    stopping: 'Stopping',
+    fault: 'Fault',
+  },
+  run: {
+    start: 'Start',
+    stop: 'Stop',
+    startNamed: 'Start {{name}}',
+    stopNamed: 'Stop {{name}}',
+    stopTitle: 'Stop {{name}}?',
+    stopText:
+      'Everybody who uses its depth or results, robots too, gets none until it is started again.',
+  },
   error: {
     connection: 'No answer from the server',
     invalid: 'That cannot be accepted',
@@ -123,6 +141,24 @@ export const de: typeof en = {
     admin: 'Administrator',
     robot: 'Roboter',
     unknown: 'Unbekannte Rolle',
+  },
+  runState: {
+    unknown: 'Unbekannt',
+    stopped: 'Angehalten',
+    starting: 'Startet',
+    running: 'Läuft',
+    degraded: 'Eingeschränkt',
+    stopping: 'Hält an',
+    fault: 'Fehler',
+  },
+  run: {
+    start: 'Starten',
+    stop: 'Anhalten',
+    startNamed: '{{name}} starten',
+    stopNamed: '{{name}} anhalten',
+    stopTitle: '{{name}} anhalten?',
+    stopText:
+      'Wer ihre Tiefe oder Ergebnisse nutzt, auch Roboter, bekommt keine mehr bis zum nächsten Start.',
   },
   error: {
     connection: 'Keine Antwort vom Server',

@@ -7,7 +7,7 @@ import { sliderScale } from './sliderScale';
 import { TypedText } from './TypedText';
 import { parseNumber } from './value';
 
-const LONGEST_UNIT = 4;
+const kLongestUnit = 4;
 
 /** A slider whose knob is where the user wants it, and a number that says what the server has. */
 export function NumberField({ field, id, disabled, onEdit }: ControlProps) {
@@ -53,7 +53,7 @@ export function NumberField({ field, id, disabled, onEdit }: ControlProps) {
         }}
       />
       {/* Long ones stand below, with the range. */}
-      <span className={classes.unit}>{info.unit.length <= LONGEST_UNIT ? info.unit : ''}</span>
+      <span className={classes.unit}>{info.unit.length <= kLongestUnit ? info.unit : ''}</span>
     </div>
   );
 }

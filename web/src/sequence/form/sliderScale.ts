@@ -8,10 +8,10 @@ export interface SliderScale {
   positionOf(value: number): number;
 }
 
-const POSITIONS = 1000;
+const kPositions = 1000;
 // The initial value of a wide range is brought to this part of the slider.
-const INITIAL_PLACE = 0.3;
-const WIDE = 0.05;
+const kInitialPlace = 0.3;
+const kWide = 0.05;
 
 /**
  * A slider for a number with both ends; undefined for others. A range whose initial value lies far
@@ -24,8 +24,8 @@ export function sliderScale(info: ParameterInfo): SliderScale | undefined {
   const whole = type === ParameterType.INT;
   const initial = Number(plainOf(info.initial) ?? min);
   const place = (initial - min) / span;
-  const power = place > 0 && place < WIDE ? Math.log(place) / Math.log(INITIAL_PLACE) : 1;
-  if (whole && power === 1 && span <= POSITIONS) {
+  const power = place > 0 && place < kWide ? Math.log(place) / Math.log(kInitialPlace) : 1;
+  if (whole && power === 1 && span <= kPositions) {
     return {
       positions: span,
       valueAt: (position) => min + position,
@@ -33,13 +33,13 @@ export function sliderScale(info: ParameterInfo): SliderScale | undefined {
     };
   }
   return {
-    positions: POSITIONS,
+    positions: kPositions,
     valueAt: (position) => {
-      const value = min + span * (position / POSITIONS) ** power;
+      const value = min + span * (position / kPositions) ** power;
       return whole ? Math.round(value) : Math.min(Math.max(round(value, span), min), max);
     },
     positionOf: (value) =>
-      Math.round(POSITIONS * Math.min(Math.max((value - min) / span, 0), 1) ** (1 / power)),
+      Math.round(kPositions * Math.min(Math.max((value - min) / span, 0), 1) ** (1 / power)),
   };
 }
 

@@ -5,7 +5,7 @@ import { type Field, type ParameterCalls, ParameterEditor } from './parameterEdi
 import { valueOf } from './value';
 
 // Changes by others appear within this time. A stream of them would be the tab's second one.
-const PERIOD_MS = 1500;
+const kPeriodMs = 1500;
 
 /** The editor of a sequence's parameters, kept up to date while the tab is visible. */
 export function useParameterEditor(sequence: string): ParameterEditor {
@@ -20,7 +20,7 @@ export function useParameterEditor(sequence: string): ParameterEditor {
       asking = false;
     };
     void look();
-    const timer = setInterval(() => void look(), PERIOD_MS);
+    const timer = setInterval(() => void look(), kPeriodMs);
     return () => clearInterval(timer);
   }, [editor]);
   return editor;

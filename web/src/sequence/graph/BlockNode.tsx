@@ -3,7 +3,7 @@ import { createContext, memo, useContext } from 'react';
 import { useTranslation } from 'react-i18next';
 import type { BlockState, PortInfo } from '../../gen/visionserver/v1/sequence_pb';
 import { number } from '../view/format';
-import { type GraphBlock, HEAD_PX, PORT_PX, portColor } from './graph';
+import { type GraphBlock, kHeadPx, kPortPx, portColor } from './graph';
 import classes from './graph.module.css';
 import { Preview } from './Preview';
 
@@ -19,7 +19,7 @@ export const BlockNode = memo(function BlockNode({ data: { block } }: NodeProps<
   const error = state?.lastError ?? '';
   return (
     <div className={classes.block} data-failed={error !== ''} title={block.doc}>
-      <div className={classes.head} style={{ height: HEAD_PX }}>
+      <div className={classes.head} style={{ height: kHeadPx }}>
         <div className={classes.names}>
           <strong>{block.id}</strong>
           <span>{block.type}</span>
@@ -48,14 +48,14 @@ function Ports({ ports, side }: { ports: PortInfo[]; side: 'in' | 'out' }) {
   return (
     <ul className={side === 'in' ? classes.inputs : classes.outputs}>
       {ports.map((port, i) => (
-        <li key={port.name} style={{ height: PORT_PX }} title={`${port.type}: ${port.doc}`}>
+        <li key={port.name} style={{ height: kPortPx }} title={`${port.type}: ${port.doc}`}>
           {port.name}
           <Handle
             type={side === 'in' ? 'target' : 'source'}
             position={side === 'in' ? Position.Left : Position.Right}
             id={port.name}
             isConnectable={false}
-            style={{ top: HEAD_PX + (i + 0.5) * PORT_PX, background: portColor(port.type) }}
+            style={{ top: kHeadPx + (i + 0.5) * kPortPx, background: portColor(port.type) }}
           />
         </li>
       ))}

@@ -7,7 +7,7 @@ import type { BlockType, SequenceSpec, SequenceState } from '../../gen/visionser
 import type { Output } from '../outputs';
 import { arrange } from './arrange';
 import { BlockNode, type BlockNodeType, BlockStates } from './BlockNode';
-import { blocksOf, type GraphBlock, hasPlaces, portColor, WIDTH_PX } from './graph';
+import { blocksOf, type GraphBlock, hasPlaces, portColor, kWidthPx } from './graph';
 import classes from './graph.module.css';
 
 interface Props {
@@ -76,7 +76,7 @@ function nodeOf(block: GraphBlock): BlockNodeType {
     id: block.id,
     type: 'block',
     position: { x: block.x, y: block.y },
-    width: WIDTH_PX,
+    width: kWidthPx,
     height: block.height,
     data: { block },
     ariaLabel: `${block.id}, ${block.type}`,

@@ -9,8 +9,8 @@ import { useDisplay } from '../view/display';
 import type { Frame } from '../codec/frame';
 import classes from './graph.module.css';
 
-const WIDTH_PX = 160;
-const FPS = 4;
+const kWidthPx = 160;
+const kFps = 4;
 
 /** A small live picture of an output; asks for nothing while it is not seen. */
 export function Preview({ output }: { output: Output }) {
@@ -30,7 +30,7 @@ export function Preview({ output }: { output: Output }) {
       live ??= new LiveStream<Frame>(
         multiplexer,
         {
-          wanted: { stream: output.stream, maxWidthPx: WIDTH_PX, maxFps: FPS, window: 1 },
+          wanted: { stream: output.stream, maxWidthPx: kWidthPx, maxFps: kFps, window: 1 },
           decode: (item) => decoder.decode(item),
           draw,
           release: (frame) => {

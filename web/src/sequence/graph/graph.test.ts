@@ -3,7 +3,7 @@ import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
 import { BlockTypeSchema, SequenceSpecSchema } from '../../gen/visionserver/v1/sequence_pb';
 import { arrange } from './arrange';
-import { blocksOf, type GraphBlock, hasPlaces, WIDTH_PX } from './graph';
+import { blocksOf, type GraphBlock, hasPlaces, kWidthPx } from './graph';
 
 const types = [
   create(BlockTypeSchema, {
@@ -28,7 +28,7 @@ const specOf = (places: [string, number, number][]) =>
 const preview = { path: 'left.frame', kind: 'picture', type: 'frame', stream: 's/left.frame' } as const;
 
 function overlaps(a: GraphBlock, b: GraphBlock): boolean {
-  const apartX = a.x + WIDTH_PX <= b.x || b.x + WIDTH_PX <= a.x;
+  const apartX = a.x + kWidthPx <= b.x || b.x + kWidthPx <= a.x;
   const apartY = a.y + a.height <= b.y || b.y + b.height <= a.y;
   return a !== b && !apartX && !apartY;
 }
@@ -59,7 +59,7 @@ describe('the blocks of a graph', () => {
     const spec = specOf([['left', 0, 0], ['one', 0, 0], ['two', 0, 0]]);
     expect(hasPlaces(spec)).toBe(false);
     const blocks = arrange(blocksOf(spec, types, [preview]), spec.connections);
-    expect(blocks[0]!.x + WIDTH_PX).toBeLessThan(blocks[1]!.x);
-    expect(blocks[1]!.x + WIDTH_PX).toBeLessThan(blocks[2]!.x);
+    expect(blocks[0]!.x + kWidthPx).toBeLessThan(blocks[1]!.x);
+    expect(blocks[1]!.x + kWidthPx).toBeLessThan(blocks[2]!.x);
   });
 });

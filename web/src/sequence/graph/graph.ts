@@ -20,12 +20,12 @@ export interface GraphBlock {
   height: number;
 }
 
-export const WIDTH_PX = 208;
-export const HEAD_PX = 44;
-export const PORT_PX = 18;
-export const PREVIEW_PX = 124;
-const FOOT_PX = 8;
-const GAP_PX = 28;
+export const kWidthPx = 208;
+export const kHeadPx = 44;
+export const kPortPx = 18;
+export const kPreviewPx = 124;
+const kFootPx = 8;
+const kGapPx = 28;
 
 /** Blocks where the sequence's author put them, pulled apart until none covers another. */
 export function blocksOf(spec: SequenceSpec, types: BlockType[], outputs: Output[]): GraphBlock[] {
@@ -43,10 +43,10 @@ function blockOf({ id, type, x, y }: BlockSpec, types: BlockType[], all: Output[
   const { inputs = [], outputs = [], doc = '' } = types.find((one) => one.type === type) ?? {};
   const preview = all.find(({ path }) => path.startsWith(`${id}.`));
   const height =
-    HEAD_PX +
-    Math.max(inputs.length, outputs.length) * PORT_PX +
-    (preview ? PREVIEW_PX : 0) +
-    FOOT_PX;
+    kHeadPx +
+    Math.max(inputs.length, outputs.length) * kPortPx +
+    (preview ? kPreviewPx : 0) +
+    kFootPx;
   return { id, type, doc, inputs, outputs, preview, x, y, height };
 }
 
@@ -54,12 +54,12 @@ function blockOf({ id, type, x, y }: BlockSpec, types: BlockType[], all: Output[
 function spread(blocks: GraphBlock[]): GraphBlock[] {
   const columns = [...new Set(blocks.map(({ x }) => x))].sort((a, b) => a - b);
   const distances = columns.slice(1).map((x, i) => x - columns[i]!);
-  const stretchX = Math.max(1, ...distances.map((distance) => (WIDTH_PX + 2 * GAP_PX) / distance));
+  const stretchX = Math.max(1, ...distances.map((distance) => (kWidthPx + 2 * kGapPx) / distance));
   let stretchY = 1;
   for (const a of blocks) {
     for (const b of blocks) {
       if (a.x === b.x && a.y < b.y) {
-        stretchY = Math.max(stretchY, (a.height + GAP_PX) / (b.y - a.y));
+        stretchY = Math.max(stretchY, (a.height + kGapPx) / (b.y - a.y));
       }
     }
   }

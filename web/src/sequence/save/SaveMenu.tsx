@@ -1,5 +1,6 @@
 import { Button, Menu } from '@mantine/core';
 import { useTranslation } from 'react-i18next';
+import { download } from '../../shell/download';
 import { notifyError } from '../../shell/ErrorNote';
 import type { Scene } from '../view/scene';
 import { shownOf, snapshot, type SnapshotKind, snapshotKinds } from './snapshot';
@@ -37,14 +38,4 @@ export function SaveMenu({ sequence, scene }: { sequence: string; scene: Scene }
       </Menu.Dropdown>
     </Menu>
   );
-}
-
-function download(name: string, content: Blob): void {
-  const address = URL.createObjectURL(content);
-  const link = document.createElement('a');
-  link.href = address;
-  link.download = name;
-  link.click();
-  // The browser has taken it by then.
-  setTimeout(() => URL.revokeObjectURL(address), 60_000);
 }

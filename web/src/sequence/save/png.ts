@@ -12,7 +12,7 @@ export interface PngImage {
   description: string;
 }
 
-const SIGNATURE = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
+const kSignature = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
 
 const crcTable = Uint32Array.from({ length: 256 }, (_, byte) => {
   let crc = byte;
@@ -58,7 +58,7 @@ export async function encodePng(image: PngImage): Promise<Blob> {
   }
   const text = new TextEncoder().encode(`Description\0${description}`);
   const parts = [
-    Uint8Array.from(SIGNATURE),
+    Uint8Array.from(kSignature),
     chunk('IHDR', header),
     chunk('tEXt', text),
     chunk('IDAT', await deflate(rows)),

@@ -8,7 +8,7 @@ export const snapshotKinds = ['depth', 'disparity', 'picture', 'cloud'] as const
 export type SnapshotKind = (typeof snapshotKinds)[number];
 
 // As the block SaveImages does it, and usual in stereo data sets.
-const DISPARITY_SCALE = 256;
+const kDisparityScale = 256;
 
 /** Depth in millimetres, 0 where unknown. */
 export function depth16(map: MapFrame): Uint16Array {
@@ -17,7 +17,7 @@ export function depth16(map: MapFrame): Uint16Array {
 
 /** Disparity in 1/256 px, 0 where unknown. */
 export function disparity16(map: MapFrame): Uint16Array {
-  return tabulate(map, (stored) => disparity_px(map, stored) * DISPARITY_SCALE);
+  return tabulate(map, (stored) => disparity_px(map, stored) * kDisparityScale);
 }
 
 function tabulate(map: MapFrame, of: (stored: number) => number): Uint16Array {
