@@ -68,16 +68,20 @@ GrpcServerOptions ToGrpcOptions(const config::Limits& limits, ListenAddress addr
 HttpServerOptions ToHttpOptions(const config::ServerConfig& config, ListenAddress address) {
   const config::Limits& limits = config.limits();
   const config::WebLimits& web = config.web_limits();
+  const milliseconds keepalive(limits.keepalive_ms());
+  const milliseconds unread(limits.unread_ms());
   return {.acceptor = {.address = std::move(address),
                        .max_connections = web.connections(),
-                       .max_connections_per_address = web.connections_per_address()},
+                       .max_connections_per_address = web.connections_per_address(),
+                       .keepalive = keepalive,
+                       .vanished = std::max({2 * keepalive, 2 * unread, milliseconds(60'000)})},
           .limits = {
               .handshake = milliseconds(limits.handshake_ms()),
               .head = milliseconds(web.head_ms()),
               .idle = milliseconds(web.idle_ms()),
               .calls = {.request_bytes = static_cast<size_t>(limits.request_kib()) << 10,
                         .request_time = milliseconds(web.body_ms()),
-                        .unread = {.silence = milliseconds(limits.unread_ms())},
+                        .unread = {.silence = unread},
                         .memory_bytes = static_cast<size_t>(limits.receive_memory_mib()) << 20}}};
 }
 

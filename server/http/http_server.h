@@ -21,7 +21,9 @@
 namespace vs {
 
 struct HttpServerOptions {
-  AcceptorOptions acceptor{.max_connections = 256, .max_connections_per_address = 32};
+  AcceptorOptions acceptor{.max_connections = 256,
+                           .max_connections_per_address = 32,
+                           .keepalive = std::chrono::seconds(10)};
   // Absent: plain text, which only an address of this machine itself may have.
   std::optional<CertificateFiles> certificate;
   // Folder of the page's files; see WebRoot.

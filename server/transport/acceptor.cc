@@ -73,6 +73,11 @@ int LimitByOpenFiles(int wanted) {
   return static_cast<int>(std::clamp<int64_t>(files - kOtherFiles, 1, wanted));
 }
 
+void SetOption(int fd, int level, int option, int64_t value) {
+  const auto number = static_cast<int>(value);
+  ::setsockopt(fd, level, option, &number, sizeof number);
+}
+
 int OpenReserve() { return ::open("/dev/null", O_RDONLY | O_CLOEXEC); }
 
 Status SystemError(std::string_view what, const ListenAddress& address) {
@@ -170,8 +175,14 @@ void Acceptor::AcceptOne() {
     ::close(fd);
     return;
   }
-  const int on = 1;
-  ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  SetOption(fd, IPPROTO_TCP, TCP_NODELAY, 1);
+  if (options_.keepalive.count() > 0) {
+    const auto quiet = std::chrono::ceil<std::chrono::seconds>(options_.keepalive);
+    SetOption(fd, SOL_SOCKET, SO_KEEPALIVE, 1);
+    SetOption(fd, IPPROTO_TCP, TCP_KEEPIDLE, quiet.count());
+    SetOption(fd, IPPROTO_TCP, TCP_KEEPINTVL, std::max<int64_t>(1, quiet.count() / 2));
+    SetOption(fd, IPPROTO_TCP, TCP_USER_TIMEOUT, options_.vanished.count());
+  }
   take_(fd, address);
 }
 

@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -19,6 +20,12 @@ struct AcceptorOptions {
   ListenAddress address;
   int max_connections = 1024;
   int max_connections_per_address = 64;
+  // A client that is quiet for so long is asked by TCP for a sign of life, rounded up to seconds.
+  // 0: not asked, because who takes the connections does it.
+  std::chrono::milliseconds keepalive{0};
+  // One that was asked or sent something and has acknowledged nothing for so long has vanished: its
+  // connection fails. Also one whose buffers stay full, so it is longer than anybody may be silent.
+  std::chrono::milliseconds vanished{60'000};
 };
 
 // Listens on a TCP port and hands on each connection that the limits allow.

@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -20,7 +23,34 @@ using std::chrono::hours;
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
+// Whether the kernel will ask the client on `port` of this machine for a sign of life.
+bool KernelWatches(uint16_t port) {
+  std::ifstream connections("/proc/net/tcp");
+  std::string line;
+  while (std::getline(connections, line)) {
+    std::istringstream fields(line);
+    std::string number;
+    std::string local;
+    std::string remote;
+    std::string state;
+    std::string queues;
+    std::string timer;
+    fields >> number >> local >> remote >> state >> queues >> timer;
+    const size_t colon = local.find(':');
+    if (colon == std::string::npos || state != "01") continue;
+    // "02": the timer that runs is the one for keep-alive.
+    if (std::stoul(local.substr(colon + 1), nullptr, 16) == port) return timer.starts_with("02:");
+  }
+  return false;
+}
+
 class HttpServerTest : public HttpTest {};
+
+TEST_F(HttpServerTest, AsksClientsOfSilentStreamsForASignOfLife) {
+  Start();
+  const WebClient client = OpenStream();
+  EXPECT_TRUE(WaitUntil([&] { return KernelWatches(server_->port()); }));
+}
 
 TEST_F(HttpServerTest, KeepsToItsLimitOfConnections) {
   options_.acceptor.max_connections_per_address = 3;

@@ -2,9 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <vector>
 
 #include "engine/base/mutex.h"
@@ -30,6 +34,13 @@ class Taker {
     MutexLock lock(mutex_);
     return fds_.size();
   }
+  int Option(int level, int option) {
+    MutexLock lock(mutex_);
+    int value = -1;
+    socklen_t size = sizeof value;
+    EXPECT_EQ(::getsockopt(fds_.back(), level, option, &value, &size), 0);
+    return value;
+  }
   void CloseOne() {
     MutexLock lock(mutex_);
     ::close(fds_.back());
@@ -52,6 +63,11 @@ class AcceptorTest : public ::testing::Test {
     acceptor_ = *Acceptor::Listen({.address = *ListenAddress::Parse("127.0.0.1:0"),
                                    .max_connections = max_connections,
                                    .max_connections_per_address = max_per_address});
+  }
+  void ListenWatchfully() {
+    acceptor_ = *Acceptor::Listen({.address = *ListenAddress::Parse("127.0.0.1:0"),
+                                   .keepalive = std::chrono::milliseconds(9'500),
+                                   .vanished = std::chrono::milliseconds(45'000)});
   }
   void Start() {
     acceptor_->Start([this](int fd, const std::string& /*address*/) { taker_.Take(fd); });
@@ -168,6 +184,26 @@ TEST_F(AcceptorTest, ListensOnIpv6) {
   (*listening)->Start([this](int fd, const std::string& /*address*/) { taker_.Take(fd); });
   RawSocket by_ipv4((*listening)->port());
   EXPECT_TRUE(Taken(1));
+}
+
+TEST_F(AcceptorTest, NoticesAClientThatVanishesWithoutAWord) {
+  ListenWatchfully();
+  const RawSocket client(acceptor_->port());
+  Start();
+  ASSERT_TRUE(Taken(1));
+  EXPECT_EQ(taker_.Option(SOL_SOCKET, SO_KEEPALIVE), 1);
+  EXPECT_EQ(taker_.Option(IPPROTO_TCP, TCP_KEEPIDLE), 10);
+  EXPECT_EQ(taker_.Option(IPPROTO_TCP, TCP_KEEPINTVL), 5);
+  EXPECT_EQ(taker_.Option(IPPROTO_TCP, TCP_USER_TIMEOUT), 45'000);
+}
+
+TEST_F(AcceptorTest, LeavesThatToOthersWhoWantTo) {
+  Listen(10, 10);
+  const RawSocket client(acceptor_->port());
+  Start();
+  ASSERT_TRUE(Taken(1));
+  EXPECT_EQ(taker_.Option(SOL_SOCKET, SO_KEEPALIVE), 0);
+  EXPECT_EQ(taker_.Option(IPPROTO_TCP, TCP_USER_TIMEOUT), 0);
 }
 
 }  // namespace
