@@ -32,6 +32,13 @@ const pages = {
       await drawn(page, 'preview-match.disparity');
     },
   },
+  sequence_stop: {
+    place: '/sequence/live',
+    ready: async (page) => {
+      await page.getByRole('button', { name: 'Stop live' }).click();
+      await page.getByRole('dialog', { name: 'Stop live?' }).waitFor();
+    },
+  },
   results: {
     place: '/results',
     ready: (page) => page.getByRole('button', { name: /^Open result/ }).first().waitFor(),
@@ -48,14 +55,32 @@ const pages = {
     },
   },
   users: { place: '/users', ready: (page) => page.getByRole('cell', { name: 'olga' }).first().waitFor() },
+  users_sessions: {
+    place: '/users',
+    ready: async (page) => {
+      await page.getByRole('tab', { name: 'Sessions' }).click();
+      await page.getByRole('cell', { name: 'olga' }).first().waitFor();
+    },
+  },
+  users_keys: {
+    place: '/users',
+    ready: async (page) => {
+      await page.getByRole('tab', { name: 'API keys' }).click();
+      await page.getByRole('cell', { name: 'palletizer' }).first().waitFor();
+    },
+  },
   audit: { place: '/audit', ready: (page) => page.getByRole('cell', { name: /CreateUser/ }).first().waitFor() },
 };
 
 let server;
 let browser;
+// Those that are looked at without a word of English.
+const inGerman = ['overview', 'sequence', 'users', 'audit'];
+
 before(async () => {
   server = await new TestServer({ live: liveSequence() }).start();
   await server.setUp({ olga: role.operator });
+  await server.admin.users.createApiKey({ name: 'palletizer', role: role.robot });
   browser = await Browser.launch();
 });
 after(async () => {
@@ -88,3 +113,21 @@ for (const colorScheme of ['dark', 'light']) {
     await page.context().close();
   });
 }
+
+test('pages in German', async (all) => {
+  const page = await browser.newPage({ viewport: { width: 1024, height: 768 } });
+  await logIn(page, server);
+  await page.evaluate(() => localStorage.setItem('visionserver.language', 'de'));
+  for (const name of inGerman) {
+    await all.test(name, async () => {
+      const { place, ready } = pages[name];
+      await page.goto(server.page + place);
+      await page.getByRole('link', { name: 'Übersicht' }).waitFor();
+      await ready(page);
+      await picture(page, `${name}_german`);
+      await assertAccessible(page, `${name} in German`);
+      assertNoFaults(page);
+    });
+  }
+  await page.context().close();
+});

@@ -9,10 +9,12 @@ import { assertNoFaults, Browser, logIn, until } from './support/browser.mjs';
 import { waitForNextFrame } from './support/canvas.mjs';
 import { stillSequence, writeScene } from './support/scene.mjs';
 import { TestServer } from './support/server.mjs';
+import { followSubscriptions } from './support/subscriptions.mjs';
 
 let server;
 let browser;
 let page;
+let watched;
 let scene;
 let sequence;
 before(async () => {
@@ -24,6 +26,7 @@ before(async () => {
   await server.setUp();
   browser = await Browser.launch();
   page = await browser.newPage({ viewport: { width: 1600, height: 900 } });
+  watched = followSubscriptions(page);
   await logIn(page, server, 'admin', '/sequence/still');
   await waitForNextFrame(page);
 });
@@ -117,6 +120,8 @@ test('two clicks measure the true distance within 2 %', async () => {
 test('the blocks show times and pictures, which end with their tab', async () => {
   const subscribers = async () =>
     (await server.admin.streams.listStreams({})).streams.find(({ stream }) => stream === 'still/depth').subscribers;
+  const large = watched();
+  assert.deepEqual(large, ['still/cameras.pair', 'still/depth']);
   await page.getByRole('tab', { name: 'Blocks' }).click();
   for (const output of ['cameras.pair', 'match.disparity']) {
     await until(`a picture of ${output}`, () => page.getByTestId(`preview-${output}`).getAttribute('data-frame'));
@@ -125,9 +130,16 @@ test('the blocks show times and pictures, which end with their tab', async () =>
     assert.match(await page.getByTestId(`time-${id}`).textContent(), /^\d+(\.\d+)? ms$/);
   }
   await until('the large depth to end', async () => (await subscribers()) === 1);
+  assert.deepEqual(watched(), ['still/cameras.pair 160', 'still/depth 160']);
   await page.getByRole('tab', { name: 'Pictures' }).click();
   await waitForNextFrame(page);
   await until('the preview to end', async () => (await subscribers()) === 1);
+  await until('all previews to end', () => watched().join() === large.join());
+  // The server has obeyed each time.
+  const { methods } = await server.admin.system.getStatistics({});
+  for (const { method, failed } of methods.filter(({ method }) => /StreamService/.test(method))) {
+    assert.equal(failed, 0n, method);
+  }
 });
 
 test('a parameter is set with the keyboard alone', async () => {

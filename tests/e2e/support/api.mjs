@@ -43,6 +43,12 @@ export function connect(address, token = '') {
   );
 }
 
+/** The message in the body of a call that a page has made. */
+export function readRequest(type, body) {
+  // Behind the flags and the length that gRPC-Web puts before each message.
+  return fromBinary(registry.getMessage(`visionserver.v1.${type}`), body.subarray(5));
+}
+
 /** Value of a parameter or argument: whole numbers are integers unless `double`. */
 export const value = {
   int: (number) => ({ kind: { case: 'intValue', value: BigInt(number) } }),

@@ -127,4 +127,4 @@ export class TestServer {
 }
 
 export const passwordOf = (user) => `secret of ${user}`;
-export const role = { viewer: 1, operator: 2, engineer: 3, admin: 4 };
+export const role = { viewer: 1, operator: 2, engineer: 3, admin: 4, robot: 5 };
