@@ -15,20 +15,28 @@ namespace vs {
 inline constexpr int kFilterMargin = 3;
 inline constexpr int kFilterLanes = 64;
 
-// What selection.h says of a row of winners before it knows about the right view: the stored
-// disparity, and the confidence 255 * (N - Z) / N.
-struct MeasureRow {
+// A row of winners and what JudgeRow of selection.h needs to know to make disparities of it.
+struct JudgedRow {
   WinnerRow winners;
+  const uint8_t* right_index = nullptr;  // null without left_right_check
+  // Rows y - 2 .. y + 2 of the left picture; the border row in place of those beyond.
+  const uint8_t* left[5] = {};
   int width = 0;  // at least kMinPictureSize
-  SubPixel sub_pixel = SubPixel::kOff;
-  int first_stored = 0;  // of index 0
+  int min_disparity = 0;
   int last_index = 0;
+  int first_stored = 0;  // the stored disparity of index 0
+  SubPixel sub_pixel = SubPixel::kOff;
+  bool lenient = false;
+  int tolerance = 0;
+  int least_percent = 100;  // 100 - uniqueness_percent
+  int min_confidence = 0;
   uint16_t* disparity = nullptr;
   uint8_t* confidence = nullptr;
+  uint8_t* reason = nullptr;
 };
 
 struct FilterKernels {
-  void (*measure)(const MeasureRow& row);
+  void (*judge)(const JudgedRow& row);
   // The median of 3 x 3 or 5 x 5 pixels: `rows` are the 3 or 5 rows around.
   void (*median3)(const uint16_t* const* rows, int width, uint16_t* out);
   void (*median5)(const uint16_t* const* rows, int width, uint16_t* out);

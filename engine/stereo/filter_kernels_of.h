@@ -6,18 +6,12 @@
 #include <cstdint>
 
 #include "engine/stereo/filter_kernels.h"
+#include "engine/stereo/judge_kernel_of.h"
 
 // NOLINTBEGIN(misc-definitions-in-headers): each file that includes this shall have its own.
 namespace {
 
-// Pixels that are filtered at a time, side by side: one register of this instruction set.
-#if defined(__AVX512BW__)
-constexpr int kRegisterBytes = 64;
-#elif defined(__AVX2__)
-constexpr int kRegisterBytes = 32;
-#else
-constexpr int kRegisterBytes = 16;
-#endif
+// Pixels that are filtered at a time, side by side.
 using Lanes = uint16_t __attribute__((vector_size(kRegisterBytes)));
 constexpr int kLaneCount = kRegisterBytes / 2;
 static_assert(kLaneCount <= vs::kFilterLanes);
@@ -113,80 +107,7 @@ void GatedMedianRow(const uint16_t* const* rows, const uint16_t* const* greys, i
   }
 }
 
-using Ints = int32_t __attribute__((vector_size(kRegisterBytes)));
-using Floats = float __attribute__((vector_size(kRegisterBytes)));
-constexpr int kIntCount = kRegisterBytes / 4;
-static_assert(kIntCount <= vs::kMinPictureSize);
-
-inline Ints LoadInts(const uint8_t* from) {
-  int32_t values[kIntCount];
-  for (int k = 0; k < kIntCount; ++k) values[k] = from[k];
-  Ints ints;
-  __builtin_memcpy(&ints, values, sizeof ints);
-  return ints;
-}
-
-template <class T>
-inline void StoreInts(const Ints& ints, T* to) {
-  int32_t values[kIntCount];
-  __builtin_memcpy(values, &ints, sizeof ints);
-  T narrow[kIntCount];
-  for (int k = 0; k < kIntCount; ++k) narrow[k] = static_cast<T>(values[k]);
-  __builtin_memcpy(to, narrow, sizeof narrow);
-}
-
-// a / b in integers, for a of 0..2^17 and b of 1..2^10, by the division of floats. Exact: both are
-// floats, and a quotient that is no integer is at least 1 / b below the next one, more than
-// rounding can add.
-inline Ints Quotient(Ints a, Ints b) {
-  return __builtin_convertvector(
-      __builtin_convertvector(a, Floats) / __builtin_convertvector(b, Floats), Ints);
-}
-
-// See selection.h.
-template <vs::SubPixel kMethod>
-inline Ints SubPixelSixteenths(Ints before, Ints best, Ints after) {
-  if constexpr (kMethod == vs::SubPixel::kOff) return Ints{};
-  const Ints divisor = kMethod == vs::SubPixel::kEquiangular
-                           ? (before > after ? before : after) - best
-                           : before + after - 2 * best;
-  // floor((2 n + divisor) / (2 divisor)), made positive for the integer division: n >= -8 divisor.
-  const Ints numerator = 16 * (before - after) + 17 * divisor;
-  const Ints some = divisor > 0 ? 2 * divisor : Ints{} + 1;
-  return divisor > 0 ? Quotient(numerator, some) - 8 : Ints{};
-}
-
-template <vs::SubPixel kMethod>
-void MeasureWinners(const vs::MeasureRow& row) {
-  const vs::WinnerRow winners = row.winners;
-  const int width = row.width;
-  for (int x = 0; x < width; x += kIntCount) {
-    // The last piece ends with the row.
-    const int from = x + kIntCount <= width ? x : width - kIntCount;
-    const Ints index = LoadInts(winners.index + from);
-    const Ints best = LoadInts(winners.best + from);
-    const Ints second = LoadInts(winners.second + from);
-    const Ints sixteenths = SubPixelSixteenths<kMethod>(LoadInts(winners.before + from), best,
-                                                        LoadInts(winners.after + from));
-    const Ints between = (index > 0) & (index < Ints{} + row.last_index);
-    const Ints margin = Quotient(255 * (second - best), second > 0 ? second : Ints{} + 1);
-    StoreInts(row.first_stored + 16 * index + (between & sixteenths), row.disparity + from);
-    StoreInts(margin, row.confidence + from);
-  }
-}
-
-void Measure(const vs::MeasureRow& row) {
-  switch (row.sub_pixel) {
-    case vs::SubPixel::kOff:
-      return MeasureWinners<vs::SubPixel::kOff>(row);
-    case vs::SubPixel::kParabola:
-      return MeasureWinners<vs::SubPixel::kParabola>(row);
-    case vs::SubPixel::kEquiangular:
-      return MeasureWinners<vs::SubPixel::kEquiangular>(row);
-  }
-}
-
-constexpr vs::FilterKernels kFilterKernels = {&Measure, &MedianRow<3>, &MedianRow<5>,
+constexpr vs::FilterKernels kFilterKernels = {&Judge, &MedianRow<3>, &MedianRow<5>,
                                               &GatedMedianRow};
 
 }  // namespace

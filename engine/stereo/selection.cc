@@ -1,7 +1,6 @@
 #include "engine/stereo/selection.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <numeric>
 
@@ -10,39 +9,10 @@
 namespace vs {
 namespace {
 
-constexpr int kSaturatedGrey = 254;
-constexpr int kDarkGrey = 3;
-constexpr int kTextureRadius = 2;
-constexpr int kLeastTexture = 8;
-
 uint8_t LeastOf(const uint8_t* values, int begin, int end) {
   uint8_t least = 255;
   for (int i = begin; i < end; ++i) least = std::min(least, values[i]);
   return least;
-}
-
-bool HasTexture(const GreyImage& left, int x, int y) {
-  uint8_t low = 255;
-  uint8_t high = 0;
-  const int begin = std::max(x - kTextureRadius, 0);
-  const int end = std::min(x + kTextureRadius + 1, left.width());
-  const int bottom = std::min(y + kTextureRadius, left.height() - 1);
-  for (int v = std::max(y - kTextureRadius, 0); v <= bottom; ++v) {
-    const uint8_t* row = left.Row(v);
-    for (int u = begin; u < end; ++u) {
-      low = std::min(low, row[u]);
-      high = std::max(high, row[u]);
-    }
-    if (high - low >= kLeastTexture) return true;  // mostly so after one row
-  }
-  return false;
-}
-
-InvalidReason Explain(InvalidReason reason, const GreyImage& left, int x, int y) {
-  const int grey = left.Row(y)[x];
-  if (grey >= kSaturatedGrey) return InvalidReason::kSaturated;
-  if (grey <= kDarkGrey) return InvalidReason::kDark;
-  return HasTexture(left, x, y) ? reason : InvalidReason::kLowTexture;
 }
 
 // Offers the costs of one left pixel to the right pixels that they belong to.
@@ -57,20 +27,6 @@ void OfferToRight(const uint8_t* __restrict sums, const uint8_t* __restrict indi
   }
 }
 
-// V for the left pixel with winner `index`; its counterpart is inside.
-int ViewDifference(const uint8_t* right_index, int index, int counterpart, bool lenient) {
-  const int difference = std::abs(right_index[counterpart] - index);
-  const int before = counterpart - static_cast<int>(lenient && counterpart > 0);
-  return std::min(difference, std::abs(right_index[before] - index));
-}
-
-// Rule 3.
-InvalidReason WhyTheViewsDiffer(const GreyImage& left, int x, int y, int index, int last) {
-  if (index == 0) return InvalidReason::kOutOfRangeFar;
-  if (index == last) return InvalidReason::kOutOfRangeNear;
-  return Explain(InvalidReason::kOccluded, left, x, y);
-}
-
 }  // namespace
 
 int DisparityOffset(const SgmSettings& settings) {
@@ -79,52 +35,23 @@ int DisparityOffset(const SgmSettings& settings) {
 
 void JudgeRow(const SgmSettings& settings, const GreyImage& left, int y, const WinnerRow& winners,
               const uint8_t* right_index, const FilterKernels& kernels, DisparityMap* map) {
-  const int width = left.width();
-  uint16_t* disparity = map->disparity.Row(y);
-  uint8_t* confidence = map->confidence.Row(y);
-  uint8_t* reasons = map->reason.Row(y);
-  kernels.measure(
+  const auto left_row = [&](int v) { return left.Row(std::clamp(v, 0, left.height() - 1)); };
+  kernels.judge(
       {.winners = winners,
-       .width = width,
-       .sub_pixel = settings.sub_pixel,
-       .first_stored = kDisparityScale * (settings.min_disparity - DisparityOffset(settings)),
+       .right_index = settings.left_right_check ? right_index : nullptr,
+       .left = {left_row(y - 2), left_row(y - 1), left_row(y), left_row(y + 1), left_row(y + 2)},
+       .width = left.width(),
+       .min_disparity = settings.min_disparity,
        .last_index = settings.num_disparities - 1,
-       .disparity = disparity,
-       .confidence = confidence});
-  // Copies that no byte that is stored could change.
-  const WinnerRow row = winners;
-  const int min_disparity = settings.min_disparity;
-  const int last = settings.num_disparities - 1;
-  const bool check = settings.left_right_check;
-  const bool lenient = settings.left_right_lenient;
-  const int tolerance = settings.left_right_tolerance;
-  const int least_percent = 100 - settings.uniqueness_percent;
-  const int min_confidence = settings.min_confidence;
-  for (int x = 0; x < width; ++x) {
-    const int i = row.index[x];
-    const int counterpart = x - min_disparity - i;
-    InvalidReason reason = InvalidReason::kNone;
-    if (counterpart < 0 || counterpart >= width) {
-      reason = InvalidReason::kBorder;
-    } else if (disparity[x] == 0) {
-      reason = InvalidReason::kOutOfRangeFar;
-    } else {
-      const int difference = check ? ViewDifference(right_index, i, counterpart, lenient) : 0;
-      confidence[x] = std::max(static_cast<uint8_t>(confidence[x] >> std::min(difference, 8)),
-                               kLeastConfidence);
-      if (difference > tolerance) {
-        reason = WhyTheViewsDiffer(left, x, y, i, last);
-      } else if (row.second[x] * least_percent < row.best[x] * 100) {
-        reason = Explain(InvalidReason::kAmbiguous, left, x, y);
-      } else if (confidence[x] < min_confidence) {
-        reason = InvalidReason::kFiltered;
-      }
-    }
-    reasons[x] = static_cast<uint8_t>(reason);
-    if (reason == InvalidReason::kNone) continue;
-    disparity[x] = kInvalidDisparity;
-    confidence[x] = 0;
-  }
+       .first_stored = kDisparityScale * (settings.min_disparity - DisparityOffset(settings)),
+       .sub_pixel = settings.sub_pixel,
+       .lenient = settings.left_right_lenient,
+       .tolerance = settings.left_right_tolerance,
+       .least_percent = 100 - settings.uniqueness_percent,
+       .min_confidence = settings.min_confidence,
+       .disparity = map->disparity.Row(y),
+       .confidence = map->confidence.Row(y),
+       .reason = map->reason.Row(y)});
 }
 
 void Selection::Prepare(const SgmSettings& settings, int width) {

@@ -14,11 +14,11 @@ namespace {
 using testing::ElementsAre;
 
 // What the row kernel makes of one winner, in all places of a row.
-struct Measured {
+struct Judged {
   int sixteenths;
   int confidence;
 };
-Measured MeasureOne(SubPixel method, uint8_t before, uint8_t best, uint8_t after, uint8_t second) {
+Judged JudgeOne(SubPixel method, uint8_t before, uint8_t best, uint8_t after, uint8_t second) {
   constexpr int kWidth = 37;
   std::vector<uint8_t> memory(size_t{kWidth} * WinnerRow::kPlanes);
   const WinnerRow winners = WinnerRow::In(memory.data(), kWidth);
@@ -27,21 +27,28 @@ Measured MeasureOne(SubPixel method, uint8_t before, uint8_t best, uint8_t after
   std::fill_n(winners.second, kWidth, second);
   std::fill_n(winners.before, kWidth, before);
   std::fill_n(winners.after, kWidth, after);
+  const std::vector<uint8_t> greys(kWidth, 128);
   std::vector<uint16_t> disparity(kWidth);
   std::vector<uint8_t> confidence(kWidth);
-  PlainFilterKernels().measure({.winners = winners,
-                                .width = kWidth,
-                                .sub_pixel = method,
-                                .first_stored = 160,
-                                .last_index = 4,
-                                .disparity = disparity.data(),
-                                .confidence = confidence.data()});
+  std::vector<uint8_t> reason(kWidth);
+  PlainFilterKernels().judge(
+      {.winners = winners,
+       .left = {greys.data(), greys.data(), greys.data(), greys.data(), greys.data()},
+       .width = kWidth,
+       .min_disparity = -2,  // index 2: the counterpart is the pixel itself
+       .last_index = 4,
+       .first_stored = 160,
+       .sub_pixel = method,
+       .disparity = disparity.data(),
+       .confidence = confidence.data(),
+       .reason = reason.data()});
+  EXPECT_THAT(reason, testing::Each(0));
   EXPECT_THAT(disparity, testing::Each(disparity[0]));
   EXPECT_THAT(confidence, testing::Each(confidence[0]));
   return {disparity[0] - 160 - 2 * 16, confidence[0]};
 }
 int Sixteenths(SubPixel method, uint8_t before, uint8_t best, uint8_t after) {
-  return MeasureOne(method, before, best, after, 255).sixteenths;
+  return JudgeOne(method, before, best, after, 255).sixteenths;
 }
 
 TEST(SubPixel, EquiangularAndParabolaFindTheMinimum) {
@@ -79,9 +86,10 @@ TEST(SubPixel, EqualsTheDivisionOfIntegers) {
 TEST(Confidence, EqualsTheDivisionOfIntegers) {
   for (int second = 0; second < 256; second += 3) {
     for (int best = 0; best <= second; ++best) {
-      const int expected = second == 0 ? 0 : 255 * (second - best) / second;
-      ASSERT_EQ(MeasureOne(SubPixel::kOff, 255, static_cast<uint8_t>(best), 255,
-                           static_cast<uint8_t>(second))
+      const int margin = second == 0 ? 0 : 255 * (second - best) / second;
+      const int expected = std::max(margin, 2);
+      ASSERT_EQ(JudgeOne(SubPixel::kOff, 255, static_cast<uint8_t>(best), 255,
+                         static_cast<uint8_t>(second))
                     .confidence,
                 expected)
           << second << " " << best;
