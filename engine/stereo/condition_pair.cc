@@ -30,24 +30,41 @@ struct BlurWeights {
 constexpr BlurWeights kLight = {27, 202};
 constexpr BlurWeights kStrong = {54, 148};
 
+// A row of a block.
+using BlockRow = int16_t __attribute__((vector_size(2 * kBlock)));
+
+BlockRow LoadBlockRow(const uint8_t* from) {
+  uint8_t __attribute__((vector_size(kBlock))) greys;
+  std::memcpy(&greys, from, sizeof greys);
+  return __builtin_convertvector(greys, BlockRow);
+}
+
 // Mask response of one block; negative if the block's greys reach an end of the scale.
 int BlockResponse(const GreyImage& picture, int x0, int y0) {
-  int sum = 0;
-  uint8_t low = 255;
-  uint8_t high = 0;
+  BlockRow sums = {};  // at most 8 * 8 * 255 each
+  BlockRow low = BlockRow{} + 255;
+  BlockRow high = {};
   for (int y = y0; y < y0 + kBlock; ++y) {
     const uint8_t* above = picture.Row(y - 1) + x0;
     const uint8_t* row = picture.Row(y) + x0;
     const uint8_t* below = picture.Row(y + 1) + x0;
-    for (int x = 0; x < kBlock; ++x) {
-      const int corners = above[x - 1] + above[x + 1] + below[x - 1] + below[x + 1];
-      const int sides = above[x] + below[x] + row[x - 1] + row[x + 1];
-      sum += std::abs(corners - 2 * sides + 4 * row[x]);
-      low = std::min(low, row[x]);
-      high = std::max(high, row[x]);
-    }
+    const BlockRow corners = LoadBlockRow(above - 1) + LoadBlockRow(above + 1) +
+                             LoadBlockRow(below - 1) + LoadBlockRow(below + 1);
+    const BlockRow sides =
+        LoadBlockRow(above) + LoadBlockRow(below) + LoadBlockRow(row - 1) + LoadBlockRow(row + 1);
+    const BlockRow centre = LoadBlockRow(row);
+    const BlockRow response = corners - 2 * sides + 4 * centre;
+    sums += response < 0 ? -response : response;
+    low = centre < low ? centre : low;
+    high = centre > high ? centre : high;
   }
-  return low < kLeastGrey || high > kGreatestGrey ? -1 : sum;
+  int sum = 0;
+  bool clipped = false;
+  for (int k = 0; k < kBlock; ++k) {
+    sum += sums[k];
+    clipped |= low[k] < kLeastGrey || high[k] > kGreatestGrey;
+  }
+  return clipped ? -1 : sum;
 }
 
 // One output pixel is (side * (a + c) + centre * b) / 256 of three neighbours.

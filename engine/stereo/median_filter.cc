@@ -1,10 +1,14 @@
 #include "engine/stereo/median_filter.h"
 
+#include <algorithm>
+
 #include "engine/stereo/selection.h"
 #include "engine/stereo/widened_rows.h"
 
 namespace vs {
 namespace {
+
+constexpr auto kFiltered = static_cast<uint8_t>(InvalidReason::kFiltered);
 
 // Confidence and reasons of a row whose disparities became `out`'s.
 void Explain(const DisparityMap& in, int y, DisparityMap* out) {
@@ -14,14 +18,15 @@ void Explain(const DisparityMap& in, int y, DisparityMap* out) {
   const uint8_t* reason = in.reason.Row(y);
   uint8_t* new_confidence = out->confidence.Row(y);
   uint8_t* new_reason = out->reason.Row(y);
-  for (int x = 0; x < in.disparity.width(); ++x) {
-    const bool was_valid = before[x] != kInvalidDisparity;
-    const bool is_valid = after[x] != kInvalidDisparity;
-    const uint8_t kept = confidence[x] > 0 ? confidence[x] : kFilledConfidence;
-    new_confidence[x] = is_valid ? kept : 0;
-    const auto lost = static_cast<uint8_t>(was_valid ? InvalidReason::kFiltered
-                                                     : static_cast<InvalidReason>(reason[x]));
-    new_reason[x] = is_valid ? 0 : lost;
+  const int width = in.disparity.width();
+  for (int x = 0; x < width; ++x) {
+    // Masks and no branches, so that this vectorises.
+    const uint8_t was_valid = before[x] != kInvalidDisparity ? 0xff : 0;
+    const uint8_t is_valid = after[x] != kInvalidDisparity ? 0xff : 0;
+    const uint8_t kept = std::max(confidence[x], kFilledConfidence);
+    new_confidence[x] = kept & is_valid;
+    const auto lost = static_cast<uint8_t>((kFiltered & was_valid) | (reason[x] & ~was_valid));
+    new_reason[x] = lost & ~is_valid;
   }
 }
 
