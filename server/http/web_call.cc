@@ -56,20 +56,19 @@ bool WebCall::Run(Dispatcher& dispatcher, const std::string& client_address) {
     if (!answered_ && deadline.Passed()) {
       GiveUp(DeadlineExceeded("the time that the client gave this call is over"));
     }
-    Step step = TakeStep();
+    const Step step = TakeStep();
     if (step.Nothing()) {
       WaitForStep(deadline);
       continue;
     }
-    const bool last = step.finish.has_value();
-    Do(std::move(step));
-    if (last) break;
+    Do(step);
+    if (step.finish) break;
   }
   call_->OnDone();
   return SkipRequest();
 }
 
-void WebCall::Do(Step step) {
+void WebCall::Do(const Step& step) {
   if (answered_) {
     if (step.receive) call_->OnRequest(std::nullopt);
     if (step.send && !step.finish) call_->OnSent(false);

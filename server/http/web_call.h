@@ -57,7 +57,7 @@ class WebCall final : public Channel {
 
   void Ask(Step step) VS_EXCLUDES(mutex_);
   Step TakeStep() VS_EXCLUDES(mutex_);
-  void Do(Step step);
+  void Do(const Step& step);
   void WaitForStep(const Deadline& deadline);
   void HandOverRequest();
   Result<std::string> ReadRequest();

@@ -140,7 +140,7 @@ TEST(GrpcServer, CutsOffAClientThatDoesNotReadItsAnswer) {
   TestServer server({.config = "limits { unread_ms: 500 keepalive_ms: 3600000 }"});
   constexpr const char* kQuery = "/visionserver.v1.ResultService/QueryResults";
   pb::QueryResultsRequest large;
-  large.set_sql("SELECT hex(zeroblob(400000))");
+  large.set_sql("SELECT hex(zeroblob(100000))");
   RawSocket client(server->port());
   client.Send(test::Http2Preface() +
               test::GrpcCall(1, kQuery, server.Token(Role::kViewer), large.SerializeAsString()));
