@@ -22,9 +22,9 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kSilence{50};
-constexpr size_t kMessageBytes = 4 << 20;
+constexpr size_t kMessageBytes = 8 << 20;
 // The kernel frees its buffer packet by packet, which on one machine are of 64 kB.
-constexpr size_t kSipBytes = 32 << 10;
+constexpr size_t kSipBytes = 40 << 10;
 
 // Both ends of a TCP connection, with buffers much smaller than the message.
 struct TcpPair {
@@ -46,7 +46,9 @@ struct TcpPair {
     ::setsockopt(client, SOL_SOCKET, SO_RCVBUF, &buffer_bytes, sizeof buffer_bytes);
     EXPECT_EQ(::connect(client, any, size), 0);
     server = ::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    ::setsockopt(server, SOL_SOCKET, SO_SNDBUF, &buffer_bytes, sizeof buffer_bytes);
+    // The kernel asks for more only when a third of this has been read.
+    const int large_bytes = 1 << 20;
+    ::setsockopt(server, SOL_SOCKET, SO_SNDBUF, &large_bytes, sizeof large_bytes);
     EXPECT_GE(server, 0);
     ::close(listener);
   }
