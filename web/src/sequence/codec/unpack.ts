@@ -37,11 +37,18 @@ export function unpackPicture(
   const channels = bytes.length === pixels ? 1 : 3;
   checkSize(bytes, channels * pixels);
   const rgba = new Uint8ClampedArray(4 * pixels);
+  if (channels === 1) {
+    // A pixel at a time: the same three bytes and an opaque fourth, whatever the byte order.
+    const words = new Uint32Array(rgba.buffer);
+    const opaque = littleEndian ? 0xff000000 : 0x000000ff;
+    const factor = littleEndian ? 0x010101 : 0x01010100;
+    for (let i = 0; i < pixels; ++i) words[i] = opaque + bytes[i]! * factor;
+    return rgba;
+  }
   for (let i = 0; i < pixels; ++i) {
-    const from = i * channels;
-    rgba[4 * i] = bytes[from]!;
-    rgba[4 * i + 1] = bytes[from + (channels === 1 ? 0 : 1)]!;
-    rgba[4 * i + 2] = bytes[from + (channels === 1 ? 0 : 2)]!;
+    rgba[4 * i] = bytes[3 * i]!;
+    rgba[4 * i + 1] = bytes[3 * i + 1]!;
+    rgba[4 * i + 2] = bytes[3 * i + 2]!;
     rgba[4 * i + 3] = 255;
   }
   return rgba;

@@ -7,8 +7,8 @@ import { type Tick, ticks } from './ticks';
 import { useEvery } from './useEvery';
 import classes from './view.module.css';
 
-const STEPS = 32;
-const TICKS = 8;
+const kSteps = 32;
+const kTicks = 8;
 
 /** Which colour is which depth. Even in what the map holds: disparities, or metres of a depth map. */
 export function ColorBar({ scene }: { scene: Scene }) {
@@ -16,7 +16,7 @@ export function ColorBar({ scene }: { scene: Scene }) {
   const colorMap = useDisplay((display) => display.colorMap);
   const shown = useEvery(250, () => ticksOf(scene));
   const format = new Intl.NumberFormat(i18n.language, { maximumSignificantDigits: 4 });
-  const stops = Array.from({ length: STEPS + 1 }, (_, i) => cssColor(colorMap, i / STEPS));
+  const stops = Array.from({ length: kSteps + 1 }, (_, i) => cssColor(colorMap, i / kSteps));
   const values = shown.map(({ value }) => format.format(value)).join(', ');
   return (
     <div className={classes.colorBar} role="img" aria-label={t('view.colorBar', { values })}>
@@ -43,6 +43,6 @@ function ticksOf({ map, range }: Scene): Tick[] {
   return ticks(
     (place) => depth_m(map, far + place * (near - far)),
     (value) => (storedOf(map, value) - far) / (near - far),
-    TICKS,
+    kTicks,
   );
 }

@@ -10,7 +10,7 @@ const fields = ['x', 'y', 'grey', 'disparity', 'depth', 'X', 'Y', 'Z', 'reason']
 type Field = (typeof fields)[number];
 
 // Keys repeat; only where the crosshair comes to rest is spoken.
-const SPEAK_AFTER_MS = 400;
+const kSpeakAfterMs = 400;
 
 /** All that is known of the pixel under the pointer or crosshair, as it changes from frame to frame. */
 export function Inspector({ scene }: { scene: Scene }) {
@@ -43,7 +43,7 @@ export function Inspector({ scene }: { scene: Scene }) {
         const { x, y, depth, reason } = textsOf(scene, i18n.language, (one) => t(`reason.${one}`));
         if (!spoken.current || x === undefined || y === undefined) return;
         spoken.current.textContent = `x ${x}, y ${y}: ${depth ?? reason ?? '–'}`;
-      }, SPEAK_AFTER_MS);
+      }, kSpeakAfterMs);
     };
     const end = scene.pinned.on(speak);
     return () => {

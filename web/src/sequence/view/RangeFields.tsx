@@ -6,15 +6,15 @@ import { useDisplay } from './display';
 import { depth_m } from './geometry';
 import type { Scene } from './scene';
 
-const LEAST_M = 0.01;
-const STEP_M = 0.05;
+const kLeastM = 0.01;
+const kStepM = 0.05;
 
 /** From which to which depth the colours run: as the map has it, or fixed. */
 export function RangeFields({ scene }: { scene: Scene }) {
   const { t, i18n } = useTranslation('sequence');
   const format = new Intl.NumberFormat(i18n.language, { maximumFractionDigits: 3 });
   const { fixedRange, set } = useDisplay();
-  const round = (value: number) => Math.max(LEAST_M, Math.round(value * 100) / 100);
+  const round = (value: number) => Math.max(kLeastM, Math.round(value * 100) / 100);
 
   // The fixed range begins as what the automatic one shows, on round numbers.
   const fix = (fixed: boolean) => {
@@ -24,7 +24,7 @@ export function RangeFields({ scene }: { scene: Scene }) {
       return;
     }
     const near_m = round(depth_m(map, range.near));
-    const far_m = Math.max(round(depth_m(map, range.far)), near_m + LEAST_M);
+    const far_m = Math.max(round(depth_m(map, range.far)), near_m + kLeastM);
     set({ fixedRange: { near_m, far_m } });
   };
   const change = (part: { near_m?: number; far_m?: number }): boolean => {
@@ -41,7 +41,7 @@ export function RangeFields({ scene }: { scene: Scene }) {
       title={label}
       value={format.format(fixedRange?.[name] ?? 0)}
       accept={(text) => change({ [name]: parseNumber(text) ?? NaN })}
-      onStep={(direction) => change({ [name]: round((fixedRange?.[name] ?? 0) + direction * STEP_M) })}
+      onStep={(direction) => change({ [name]: round((fixedRange?.[name] ?? 0) + direction * kStepM) })}
     />
   );
 

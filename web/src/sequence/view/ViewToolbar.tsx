@@ -6,7 +6,7 @@ import { useDisplay } from './display';
 import type { Scene } from './scene';
 import classes from './view.module.css';
 
-const ZOOM_STEP = 1.5;
+const kZoomStep = 1.5;
 
 interface Props {
   scene: Scene;
@@ -20,9 +20,9 @@ export function ViewToolbar({ scene, maps }: Props) {
   const { showReasons, set } = useDisplay();
   const { viewport } = scene;
   const buttons = [
-    ['–', t('view.zoomOut'), () => viewport.zoom(1 / ZOOM_STEP)],
+    ['–', t('view.zoomOut'), () => viewport.zoom(1 / kZoomStep)],
     ['⤢', t('view.fit'), () => viewport.fit()],
-    ['+', t('view.zoomIn'), () => viewport.zoom(ZOOM_STEP)],
+    ['+', t('view.zoomIn'), () => viewport.zoom(kZoomStep)],
   ] as const;
   return (
     <Group gap="sm" role="toolbar" className={classes.toolbar} aria-label={t('view.toolbar')}>

@@ -1,12 +1,12 @@
 import type { StoredRange } from './colorize';
 
 // One pixel in 16 is enough for percentiles.
-const STRIDE = 15;
-const LOW_SHARE = 0.01;
-const HIGH_SHARE = 0.99;
-const TIME_CONSTANT_MS = 800;
+const kStride = 15;
+const kLowShare = 0.01;
+const kHighShare = 0.99;
+const kTimeConstantMs = 800;
 // The range that is shown moves only when it is off by more than this part of itself.
-const DEAD_BAND = 0.04;
+const kDeadBand = 0.04;
 
 /** Smallest and largest stored value but for 1 % at either end; undefined for an empty map. */
 export function robustRange(
@@ -15,7 +15,7 @@ export function robustRange(
 ): [number, number] | undefined {
   histogram.fill(0);
   let valid = 0;
-  for (let i = 0; i < stored.length; i += STRIDE) {
+  for (let i = 0; i < stored.length; i += kStride) {
     const value = stored[i]!;
     if (value === 0) continue;
     ++histogram[value]!;
@@ -27,7 +27,7 @@ export function robustRange(
     for (let count = 0; count <= rank; ) count += histogram[++value]!;
     return value;
   };
-  return [at(Math.floor((valid - 1) * LOW_SHARE)), at(Math.floor((valid - 1) * HIGH_SHARE))];
+  return [at(Math.floor((valid - 1) * kLowShare)), at(Math.floor((valid - 1) * kHighShare))];
 }
 
 /**
@@ -46,7 +46,7 @@ export class AutoRange {
   follow(stored: Uint16Array, now_ms: number): StoredRange | undefined {
     const measured = robustRange(stored, this.histogram);
     if (measured) {
-      const part = this.smooth ? 1 - Math.exp(-(now_ms - this.last_ms) / TIME_CONSTANT_MS) : 1;
+      const part = this.smooth ? 1 - Math.exp(-(now_ms - this.last_ms) / kTimeConstantMs) : 1;
       const [low, high] = this.smooth ?? measured;
       this.smooth = [low + part * (measured[0] - low), high + part * (measured[1] - high)];
       this.show(this.smooth);
@@ -58,7 +58,7 @@ export class AutoRange {
   }
 
   private show([low, high]: [number, number]): void {
-    const allowed = DEAD_BAND * Math.max(high - low, 1);
+    const allowed = kDeadBand * Math.max(high - low, 1);
     const [shownLow, shownHigh] = this.shown ?? [Infinity, Infinity];
     if (Math.abs(low - shownLow) <= allowed && Math.abs(high - shownHigh) <= allowed) return;
     // Never empty, so that a flat map has colours, too.

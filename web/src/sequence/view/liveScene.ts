@@ -1,9 +1,13 @@
+import { Codec } from '../../gen/visionserver/v1/stream_pb';
 import type { Frame } from '../codec/frame';
 import { LiveStream } from '../stream/liveStream';
 import { browser, decoder, multiplexer } from '../stream/pageStreams';
 import type { Figures } from '../stream/statistics';
 import { useDisplay } from './display';
 import { Scene } from './scene';
+
+// To a browser on the server's own machine the line costs less than the packing.
+const sameMachine = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
 
 /** Streams of the two views; undefined shows nothing there. */
 export interface Sources {
@@ -50,7 +54,10 @@ export class LiveScene extends Scene {
     return new LiveStream<Frame>(
       multiplexer,
       {
-        wanted: { stream, includeReasons: view === 'map' },
+        wanted:
+          view === 'map'
+            ? { stream, includeReasons: true }
+            : { stream, codec: sameMachine ? Codec.RAW : Codec.UNSPECIFIED },
         decode: (item) => decoder.decode(item),
         draw: (frame) => this.show(frame, useDisplay.getState(), browser.now_ms()),
         release: (frame) => {

@@ -4,7 +4,7 @@ import type { Pixel } from './scene';
 import type { Size, Viewport } from './viewport';
 
 // From this scale on single pixels are seen, and the crosshair frames one.
-const SEEN_PIXEL_SCALE = 6;
+const kSeenPixelScale = 6;
 
 export interface Marks {
   cursor: Pixel | undefined;
@@ -87,10 +87,10 @@ export class PixelCanvas {
     const { context } = this;
     const from = this.viewport.toCanvas(x, y);
     const middle = this.viewport.toCanvas(x + 0.5, y + 0.5);
-    const half = scale >= SEEN_PIXEL_SCALE ? scale / 2 : 4;
+    const half = scale >= kSeenPixelScale ? scale / 2 : 4;
     const reach = half + 10;
     const path = new Path2D();
-    if (scale >= SEEN_PIXEL_SCALE) path.rect(from.x, from.y, scale, scale);
+    if (scale >= kSeenPixelScale) path.rect(from.x, from.y, scale, scale);
     for (const [dx, dy] of [
       [1, 0],
       [-1, 0],

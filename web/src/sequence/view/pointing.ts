@@ -1,9 +1,9 @@
 import type { Pixel, Scene } from './scene';
 
-const WHEEL_STEP = 0.0015;
-const KEY_ZOOM = 1.5;
+const kWheelStep = 0.0015;
+const kKeyZoom = 1.5;
 // A press that moves less than this is a click.
-const CLICK_PX = 4;
+const kClickPx = 4;
 
 /**
  * Wheel, drag, pinch, click and keys on a canvas that shows the scene's viewport. `onChoose` is told
@@ -35,7 +35,7 @@ export function listenToPointing(
     // A pinch on a touch pad comes as a wheel with the control key, in small steps.
     const factor = event.ctrlKey ? 5 : 1;
     const { x, y } = place(event);
-    viewport.zoom(Math.exp(-event.deltaY * lines * factor * WHEEL_STEP), x, y);
+    viewport.zoom(Math.exp(-event.deltaY * lines * factor * kWheelStep), x, y);
   };
   const onDown = (event: PointerEvent) => {
     canvas.setPointerCapture(event.pointerId);
@@ -58,7 +58,7 @@ export function listenToPointing(
         Math.max(Math.hypot(point.x - other.x, point.y - other.y), 1);
       viewport.zoom(apart(at) / apart(before), (at.x + other.x) / 2, (at.y + other.y) / 2);
       viewport.pan(dx / 2, dy / 2);
-    } else if (travelled_px >= CLICK_PX) {
+    } else if (travelled_px >= kClickPx) {
       viewport.pan(dx, dy);
     }
   };
@@ -66,7 +66,7 @@ export function listenToPointing(
     const at = pressed.get(event.pointerId);
     pressed.delete(event.pointerId);
     const pixel = at && pixelAt(at);
-    if (pixel && travelled_px < CLICK_PX && event.type === 'pointerup') onChoose(pixel);
+    if (pixel && travelled_px < kClickPx && event.type === 'pointerup') onChoose(pixel);
   };
   const onLeave = () => scene.hover(undefined);
   const onDoubleClick = () => viewport.fit();
@@ -87,9 +87,9 @@ export function listenToPointing(
       ArrowRight: () => moveCrosshair(step, 0),
       ArrowUp: () => moveCrosshair(0, -step),
       ArrowDown: () => moveCrosshair(0, step),
-      '+': () => zoomAtCrosshair(KEY_ZOOM),
-      '=': () => zoomAtCrosshair(KEY_ZOOM),
-      '-': () => zoomAtCrosshair(1 / KEY_ZOOM),
+      '+': () => zoomAtCrosshair(kKeyZoom),
+      '=': () => zoomAtCrosshair(kKeyZoom),
+      '-': () => zoomAtCrosshair(1 / kKeyZoom),
       '0': () => viewport.fit(),
       Enter: () => scene.cursor && onChoose(scene.cursor),
       Escape: () => {

@@ -1,6 +1,6 @@
 import { Signal } from './signal';
 
-const LARGEST_SCALE = 64;
+const kLargestScale = 64;
 
 export interface Size {
   width: number;
@@ -48,7 +48,7 @@ export class Viewport {
   /** Enlarges by `factor`; what is at (x, y) of the canvas stays there. */
   zoom(factor: number, x = this.canvas.width / 2, y = this.canvas.height / 2): void {
     const fixed = this.toPicture(x, y);
-    const scale = Math.min(this.scale * factor, LARGEST_SCALE);
+    const scale = Math.min(this.scale * factor, kLargestScale);
     if (scale <= this.fitScale()) {
       this.fit();
       return;
