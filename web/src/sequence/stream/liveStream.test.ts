@@ -11,6 +11,7 @@ function setUp(wanted: Wanted) {
   const page = {
     now_ms: 0,
     draw_ms: 0,
+    age_ms: undefined as number | undefined,
     fault: '',
     drawn: [] as bigint[],
     acknowledged: [] as bigint[],
@@ -43,12 +44,13 @@ function setUp(wanted: Wanted) {
     },
     {
       now_ms: () => page.now_ms,
-      serverNow_ns: () => undefined,
+      serverNow_ns: () =>
+        page.age_ms === undefined ? undefined : 1n + BigInt(page.age_ms) * 1_000_000n,
       nextFrame: (call) => (draw = call),
     },
   );
   const show = async (seq: bigint) => {
-    handlers!.onItem(create(StreamItemSchema, { seq }));
+    handlers!.onItem(create(StreamItemSchema, { seq, header: { captureNs: 1n } }));
     await settle();
     draw!();
   };
@@ -86,5 +88,19 @@ describe('LiveStream', () => {
     page.draw_ms = 5;
     for (let seq = 2n; seq <= 10n; ++seq) await show(seq);
     expect(page.windows).toEqual([2, 1, 2]);
+  });
+
+  it('has as many under way as to gather acknowledgements, while what comes is fresh', async () => {
+    const { page, show } = setUp({ stream: 'cell/depth' });
+    page.draw_ms = 5;
+    page.age_ms = 40;
+    for (let seq = 1n; seq <= 3n; ++seq) await show(seq);
+    expect(page.windows).toEqual([2, 5]);
+    page.age_ms = 200;
+    for (let seq = 4n; seq <= 20n; ++seq) await show(seq);
+    expect(page.windows).toEqual([2, 5]);
+    page.age_ms = 500;
+    for (let seq = 21n; seq <= 30n; ++seq) await show(seq);
+    expect(page.windows).toEqual([2, 5, 2]);
   });
 });

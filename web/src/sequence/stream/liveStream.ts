@@ -25,15 +25,22 @@ export interface LiveOptions<T> {
 
 interface Waiting<T> {
   item: StreamItem;
-  received_ms: number;
+  decoding_ms: number;
   picture: T;
 }
 
-// A page that needs this long from receipt to drawn is better off with one item under way: a second
-// one would only grow old in the browser.
-const SLOW_MS = 100;
-const QUICK_MS = 50;
-const QUICK_WINDOW = 2;
+// A page that works this long on a picture is better off with one item under way: a second one would
+// only grow old in the browser. Waiting for the animation frame is no work: meanwhile a newer one can
+// take the place of the one that waits.
+const kSlowMs = 100;
+const kQuickMs = 50;
+// What arrives so fresh came over a line that holds no queue; what arrives so old may have waited in
+// one, which more items under way would make longer.
+const kFreshMs = 150;
+const kOldMs = 300;
+const kWindow = 2;
+// So many that all pictures are sent although acknowledgements are gathered.
+const kGatheringWindow = 5;
 
 /**
  * One stream on the screen: takes items, decodes them, draws the newest in the next animation frame
@@ -46,8 +53,9 @@ export class LiveStream<T> {
   private undecoded: { item: StreamItem; received_ms: number } | undefined;
   private decoding = false;
   private waiting: Waiting<T> | undefined;
-  // Of the last few pictures, from receipt to drawn; undefined before the first.
-  private turnaround_ms: number | undefined;
+  // Of the last few pictures; undefined before the first.
+  private work_ms: number | undefined;
+  private latency_ms: number | undefined;
   private notice = '';
   private ended = false;
 
@@ -56,7 +64,7 @@ export class LiveStream<T> {
     private readonly options: LiveOptions<T>,
     private readonly surroundings: Surroundings,
   ) {
-    this.wanted = { window: QUICK_WINDOW, ...options.wanted };
+    this.wanted = { window: kWindow, ...options.wanted };
     this.subscribed = mux.subscribe(this.wanted, {
       onItem: (item) => this.onItem(item),
       onNotice: (text) => this.setNotice(text),
@@ -89,7 +97,7 @@ export class LiveStream<T> {
       this.undecoded = undefined;
       try {
         const picture = await this.options.decode(item);
-        this.offer({ item, received_ms, picture });
+        this.offer({ item, decoding_ms: this.surroundings.now_ms() - received_ms, picture });
       } catch (error) {
         this.passOver(item);
         this.setNotice(textOf(error));
@@ -116,6 +124,7 @@ export class LiveStream<T> {
     const { waiting } = this;
     if (!waiting || this.ended) return;
     this.waiting = undefined;
+    const begin_ms = this.surroundings.now_ms();
     try {
       this.options.draw(waiting.picture);
     } catch (error) {
@@ -125,12 +134,13 @@ export class LiveStream<T> {
       return;
     }
     const now_ms = this.surroundings.now_ms();
-    this.statistics.onDrawn(now_ms, this.latency_ms(waiting.item));
+    const latency_ms = this.latencyOf(waiting.item);
+    this.statistics.onDrawn(now_ms, latency_ms);
     this.subscribed.acknowledge(waiting.item.seq);
-    this.adapt(now_ms - waiting.received_ms);
+    this.adapt(waiting.decoding_ms + now_ms - begin_ms, latency_ms);
   }
 
-  private latency_ms(item: StreamItem): number | undefined {
+  private latencyOf(item: StreamItem): number | undefined {
     const now_ns = this.surroundings.serverNow_ns();
     const capture_ns = item.header?.captureNs ?? 0n;
     if (now_ns === undefined || capture_ns === 0n) return undefined;
@@ -142,17 +152,23 @@ export class LiveStream<T> {
     this.subscribed.acknowledge(item.seq);
   }
 
-  private adapt(turnaround_ms: number): void {
+  private adapt(work_ms: number, latency_ms: number | undefined): void {
     if (this.options.wanted.window !== undefined) return;
-    const before_ms = this.turnaround_ms ?? turnaround_ms;
-    this.turnaround_ms = before_ms + 0.3 * (turnaround_ms - before_ms);
-    const window =
-      this.turnaround_ms > SLOW_MS ? 1
-      : this.turnaround_ms < QUICK_MS ? QUICK_WINDOW
-      : this.wanted.window;
+    this.work_ms = follow(this.work_ms, work_ms);
+    this.latency_ms = latency_ms === undefined ? undefined : follow(this.latency_ms, latency_ms);
+    const window = this.bestWindow(this.work_ms, this.latency_ms ?? kOldMs);
     if (window === this.wanted.window) return;
     this.wanted = { ...this.wanted, window };
     this.subscribed.change(this.wanted);
+  }
+
+  /** Between the limits it stays as it is. */
+  private bestWindow(work_ms: number, latency_ms: number): number {
+    const now = this.wanted.window ?? kWindow;
+    if (work_ms > kSlowMs) return 1;
+    if (work_ms > kQuickMs) return now;
+    if (latency_ms < kFreshMs) return kGatheringWindow;
+    return latency_ms < kOldMs ? Math.max(now, kWindow) : kWindow;
   }
 
   private setNotice(text: string): void {
@@ -161,5 +177,9 @@ export class LiveStream<T> {
     this.options.onNotice?.(text);
   }
 }
+
+/** A mean of the last few values, the newest one counting most. */
+const follow = (before: number | undefined, value: number) =>
+  before === undefined ? value : before + 0.3 * (value - before);
 
 const textOf = (error: unknown) => (error instanceof Error ? error.message : String(error));

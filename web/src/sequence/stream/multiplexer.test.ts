@@ -29,9 +29,9 @@ function setUp() {
   const timers = new ManualTimers();
   const mux = new Multiplexer(transport, timers);
   const seen: string[] = [];
-  const watch = (stream: string) =>
+  const watch = (stream: string, window?: number) =>
     mux.subscribe(
-      { stream },
+      { stream, window },
       {
         onItem: (item) => seen.push(`${stream} ${item.seq}`),
         onNotice: (text) => seen.push(`${stream}: ${text}`),
@@ -108,6 +108,27 @@ describe('Multiplexer', () => {
     expect(transport.acks).toEqual([both]);
     await transport.answerAck();
     expect(transport.acks).toEqual([both, [{ subscriptionId: 1, seq: 7n }]]);
+  });
+
+  it('gathers acknowledgements where there is credit to go on, until one is urgent', async () => {
+    const { transport, timers, watch } = setUp();
+    const patient = watch('a/depth', 5);
+    const urgent = watch('a/left', 1);
+    await settle();
+    await transport.send({ streamId: 's1' });
+    patient.acknowledge(1n);
+    patient.acknowledge(2n);
+    expect(timers.waiting.map(({ delay_ms }) => delay_ms)).toEqual([50]);
+    urgent.acknowledge(3n);
+    patient.acknowledge(4n);
+    expect(timers.waiting.map(({ delay_ms }) => delay_ms)).toEqual([0]);
+    await timers.run();
+    expect(transport.acks).toEqual([
+      [
+        { subscriptionId: 1, seq: 4n },
+        { subscriptionId: 2, seq: 3n },
+      ],
+    ]);
   });
 
   it('asks for nothing while nobody looks, and for all of it afterwards', async () => {

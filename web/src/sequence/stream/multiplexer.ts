@@ -20,6 +20,11 @@ export interface Subscribed {
 
 export type Connection = 'closed' | 'connecting' | 'open' | 'waiting';
 
+// From this window on the server has credit to go on with, so that acknowledgements can wait for each
+// other. A call costs a browser more than the drawing of a picture does.
+const kPatientWindow = 4;
+const kPatienceMs = 50;
+
 interface Entry {
   readonly subscriber: Subscriber;
   wanted: Wanted;
@@ -65,7 +70,7 @@ export class Multiplexer {
   private active = true;
   private nextId = 1;
   private reconciling = false;
-  private flushing = false;
+  private flushing: { delay_ms: number; cancel: () => void } | undefined;
   private cancelRetry: (() => void) | undefined;
   private state: Connection = 'closed';
 
@@ -97,7 +102,7 @@ export class Multiplexer {
       acknowledge: (seq) => {
         if (!this.opened?.told.has(id)) return;
         this.acks.set(id, seq);
-        this.flushSoon();
+        this.flushWithin((entry.wanted.window ?? 0) >= kPatientWindow ? kPatienceMs : 0);
       },
       end: () => {
         this.entries.delete(id);
@@ -120,14 +125,15 @@ export class Multiplexer {
     this.reconcileSoon();
   }
 
-  /** In one call for all that is drawn in an animation frame. */
-  private flushSoon(): void {
-    if (this.flushing) return;
-    this.flushing = true;
-    this.timers.after(0, () => {
-      this.flushing = false;
+  /** In one call for all that is drawn until then, an animation frame at least. */
+  private flushWithin(delay_ms: number): void {
+    if (this.flushing && this.flushing.delay_ms <= delay_ms) return;
+    this.flushing?.cancel();
+    const cancel = this.timers.after(delay_ms, () => {
+      this.flushing = undefined;
       this.flush();
     });
+    this.flushing = { delay_ms, cancel };
   }
 
   private flush(): void {

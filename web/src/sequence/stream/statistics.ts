@@ -1,5 +1,5 @@
-const WINDOW_MS = 2000;
-const STALE_AFTER_MS = 1000;
+const kWindowMs = 2000;
+const kStaleAfterMs = 1000;
 
 export interface Figures {
   /** Drawn per second, over the last two seconds. */
@@ -46,7 +46,7 @@ export class Statistics {
       latency_ms: this.latency(),
       dropped: this.dropped,
       age_ms,
-      stale: age_ms !== undefined && age_ms > STALE_AFTER_MS,
+      stale: age_ms !== undefined && age_ms > kStaleAfterMs,
     };
   }
 
@@ -54,11 +54,11 @@ export class Statistics {
     if (this.since_ms === undefined || this.drawn.length === 0) return 0;
     const watched_ms = now_ms - this.since_ms;
     // Just begun: from the distances between the few that there are.
-    if (watched_ms < WINDOW_MS) {
+    if (watched_ms < kWindowMs) {
       const span_ms = this.drawn[this.drawn.length - 1]!.time_ms - this.since_ms;
       return span_ms > 0 ? ((this.drawn.length - 1) * 1000) / Math.max(span_ms, watched_ms) : 0;
     }
-    return (this.drawn.length * 1000) / WINDOW_MS;
+    return (this.drawn.length * 1000) / kWindowMs;
   }
 
   private latency(): number | undefined {
@@ -69,7 +69,7 @@ export class Statistics {
   }
 
   private forget(now_ms: number): void {
-    const kept = this.drawn.findIndex(({ time_ms }) => now_ms - time_ms < WINDOW_MS);
+    const kept = this.drawn.findIndex(({ time_ms }) => now_ms - time_ms < kWindowMs);
     this.drawn.splice(0, kept < 0 ? this.drawn.length : kept);
   }
 }
