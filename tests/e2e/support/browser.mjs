@@ -22,10 +22,11 @@ const flags = [
 export class Browser {
   #browser;
 
-  static async launch() {
+  /** `more` are flags of Chromium. */
+  static async launch(more = []) {
     const browser = new Browser();
     const { chromium: launcher } = library('playwright-core');
-    browser.#browser = await launcher.launch({ executablePath: chromium, args: flags });
+    browser.#browser = await launcher.launch({ executablePath: chromium, args: [...flags, ...more] });
     return browser;
   }
 
@@ -51,6 +52,14 @@ export class Browser {
       if (message.type() === 'error') page.faults.push(message.text());
     });
     return page;
+  }
+
+  /** Chromium's processes, as { type, id }. */
+  async processes() {
+    const devTools = await this.#browser.newBrowserCDPSession();
+    const { processInfo } = await devTools.send('SystemInfo.getProcessInfo');
+    await devTools.detach();
+    return processInfo;
   }
 
   async close() {

@@ -5,10 +5,10 @@ import { join } from 'node:path';
 
 import { build } from './tools.mjs';
 
-/** Puts the pair into `folder`; gives its geometry and truth. */
-export function writeScene(folder) {
+/** Puts the pair into `folder`; gives its geometry and truth. 648 x 483 pixels, with a binning of 2. */
+export function writeScene(folder, binning = 2) {
   const truth = join(build, 'tests', 'e2e', 'e2e_scene_truth');
-  const geometry = JSON.parse(execFileSync(truth, [folder], { encoding: 'utf8' }));
+  const geometry = JSON.parse(execFileSync(truth, [folder, String(binning)], { encoding: 'utf8' }));
   const bytes = readFileSync(join(folder, 'disparity.f32'));
   const disparity_px = new Float32Array(bytes.buffer, bytes.byteOffset, bytes.length / 4);
   const depth_m = (x, y) =>
@@ -28,6 +28,18 @@ export function stillSequence(folder, geometry, { rate_hz = 5, match = {} } = {}
     { folder, rate_hz, loop: true, rectified: true, focal_px, baseline_m, center_x_px, center_y_px, offset_px },
     match,
   );
+}
+
+/** Only what depth on the screen needs, as cheap as it can be: for measuring what comes after it. */
+export function cheapSequence(folder, geometry, { rate_hz, disparities = 128 }) {
+  const match = { preset: 'single_pass', num_disparities: disparities };
+  const { blocks, connections, ...rest } = stillSequence(folder, geometry, { rate_hz, match });
+  const kept = ['cameras', 'match', 'publish_depth'];
+  return {
+    ...rest,
+    blocks: blocks.filter(({ id }) => kept.includes(id)),
+    connections: connections.filter(({ to }) => kept.includes(to.split('.')[0])),
+  };
 }
 
 /** Depth of the moving scene. */
