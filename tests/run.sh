@@ -12,7 +12,7 @@ status=0
 ctest --test-dir build/release --output-on-failure --parallel "$(nproc)" --no-tests=error \
   ${1:+--tests-regex "$1"} --output-junit "$report" || status=$?
 
-# Prints why tests were skipped, which ctest does not, then the last line.
+# Prints why tests were skipped and what was measured, which ctest does not, then the last line.
 /usr/bin/python3 - "$report" "$status" <<'PYTHON'
 import collections
 import re
@@ -30,6 +30,8 @@ for case in cases:
     skipped = case.find("skipped")  # also of a test that was not built, for another reason
     if case.get("status") == "run":
         passed += 1
+        if case.get("name") == "e2e_figures":
+            print(case.findtext("system-out", "").strip())
     elif skipped is not None and skipped.get("message") == "SKIP_REGULAR_EXPRESSION_MATCHED":
         # GTEST_SKIP() << reason, or the reason why there is no network of its own.
         output = case.findtext("system-out", "")
