@@ -58,6 +58,8 @@ async function report(pages) {
         ` p95 ${ms(quantile(latency_ms, 0.95))} of ${latency_ms.length}`,
     );
   }
+  const { latencyP50Us } = await server.admin.sequences.getSequenceState({ id: 'live' });
+  console.log(`  of that until the server has matched it: p50 ${ms(latencyP50Us / 1e3)}`);
 }
 
 try {

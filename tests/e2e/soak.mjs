@@ -1,6 +1,7 @@
 // soak.mjs [FRAMES]: shows 100,000 frames, or as many as it is told, as fast as the browser draws, on
-// all tabs of the page; fails if its memory grows by more than 20 %. Small frames: what grows does so
-// with each frame, whatever its size.
+// all tabs of the page; fails if its heap or its buffers grow by more than 20 %. Small frames: what
+// grows does so with each frame, whatever its size. The size of the process is printed only: it holds
+// what the test's own tool notes of each call that the page makes.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 
