@@ -22,7 +22,7 @@ namespace vs {
 //
 // An error of a block's Run() makes the blocks behind it skip this frame. An exception ends its run
 // (RunState::kFault, blocks stopped); other runs go on. In a warm sequence the scheduler allocates
-// nothing.
+// nothing. Where the process may (CAP_SYS_NICE), workers run at a niceness of 5 below its own.
 class Scheduler {
  public:
   // At least one worker. The clock must outlive the scheduler.

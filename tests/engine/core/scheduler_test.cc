@@ -2,8 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <map>
+#include <thread>
 #include <vector>
 
 #include "engine/base/mailbox.h"
@@ -314,6 +318,25 @@ TEST_F(SchedulerTest, TellsEachFrameWhereItIs) {
   EXPECT_GE(seen[1].block_times[0].start_ns, seen[1].popped_ns);
   EXPECT_EQ(seen[1].block_times[1].end_ns, 0) << "still at work";
   EXPECT_EQ(seen[1].parameter_hash, HashParameters(run->Parameters()));
+}
+
+TEST_F(SchedulerTest, LetsFramesGoBeforeOtherPrograms) {
+  const int own = getpriority(PRIO_PROCESS, 0);
+  bool may = false;
+  std::thread([&] { may = setpriority(PRIO_PROCESS, gettid(), own - 5) == 0; }).join();
+  if (!may) GTEST_SKIP() << "may not raise priorities; run this test as root";
+  MakeWorkers(1);
+  LimitFrames("source", 1);
+  int niceness = 0;
+  ProbeOf("step").run = [&](const StepRun&) {
+    niceness = getpriority(PRIO_PROCESS, gettid());
+    return Status();
+  };
+  const auto run = Start(ChainSpec("line", {"step"}));
+  ASSERT_TRUE(WaitForFrames(*run, 1));
+  run->Stop();
+  EXPECT_EQ(niceness, std::max(own - 5, -20));
+  EXPECT_EQ(getpriority(PRIO_PROCESS, 0), own) << "the server's other threads stay as they are";
 }
 
 }  // namespace
