@@ -2,10 +2,11 @@ import { useMemo } from 'react';
 import { useTranslation } from 'react-i18next';
 import { ParameterType } from '../../gen/visionserver/v1/sequence_pb';
 import classes from './form.module.css';
-import type { ControlProps } from './ParameterField';
+import type { ControlProps } from './ParameterControl';
 import { sliderScale } from './sliderScale';
 import { TypedText } from './TypedText';
 import { parseNumber } from './value';
+import { numberText } from './valueText';
 
 const kLongestUnit = 4;
 
@@ -14,11 +15,7 @@ export function NumberField({ field, id, disabled, onEdit }: ControlProps) {
   const { i18n } = useTranslation();
   const { info, value, draft } = field;
   const scale = useMemo(() => sliderScale(info), [info]);
-  const format = new Intl.NumberFormat(i18n.language, {
-    maximumSignificantDigits: 6,
-    useGrouping: false,
-  });
-  const step = stepOf(Number(value), info.type);
+  const text = (number: number) => numberText(number, info.type, i18n.language);
   return (
     <div className={classes.number}>
       {scale && (
@@ -31,7 +28,7 @@ export function NumberField({ field, id, disabled, onEdit }: ControlProps) {
           disabled={disabled}
           aria-label={info.name}
           aria-describedby={`${id}-note`}
-          aria-valuetext={`${format.format(Number(draft ?? value))} ${info.unit}`}
+          aria-valuetext={`${text(Number(draft ?? value))} ${info.unit}`}
           onChange={(event) => onEdit(scale.valueAt(Number(event.currentTarget.value)))}
         />
       )}
@@ -40,16 +37,20 @@ export function NumberField({ field, id, disabled, onEdit }: ControlProps) {
         className={classes.typed}
         inputMode="decimal"
         disabled={disabled}
-        value={format.format(Number(value))}
+        value={text(Number(value))}
         accept={(text) => {
           const typed = parseNumber(text);
           if (typed === undefined) return false;
           onEdit(info.type === ParameterType.INT ? Math.round(typed) : typed);
           return true;
         }}
-        onStep={(direction) => {
-          const next = Number((Number(draft ?? value) + direction * step).toPrecision(12));
+        onStep={(direction, typed) => {
+          const from = typed === undefined ? Number(draft ?? value) : parseNumber(typed);
+          if (from === undefined) return false;
+          const step = direction * stepOf(from, info.type);
+          const next = Number((from + step).toPrecision(12));
           onEdit(Math.min(Math.max(next, info.min ?? -Infinity), info.max ?? Infinity));
+          return true;
         }}
       />
       {/* Long ones stand below, with the range. */}

@@ -1,14 +1,13 @@
 import { ActionIcon } from '@mantine/core';
 import { memo, useId } from 'react';
 import { useTranslation } from 'react-i18next';
-import { ParameterType } from '../../gen/visionserver/v1/sequence_pb';
 import classes from './form.module.css';
-import { NumberField } from './NumberField';
+import { ParameterControl } from './ParameterControl';
 import type { Field, ParameterEditor } from './parameterEditor';
-import { TextField } from './TextField';
 import { useMayEdit } from './useMayEdit';
 import { useField } from './useParameters';
 import { isNumber, plainOf } from './value';
+import { useValueText } from './valueText';
 
 interface Props {
   path: string;
@@ -17,16 +16,20 @@ interface Props {
   explained: boolean;
 }
 
-/** One parameter: name, control, range, and what became of the last change. */
+/** One parameter: name, value (with a control for who may change it), range, and the last change. */
 export const ParameterField = memo(function ParameterField(props: Props) {
   const { path, editor, running, explained } = props;
   const { t } = useTranslation('sequence');
   const id = useId();
   const field = useField(editor, path);
   const mayEdit = useMayEdit(running);
+  const textOf = useValueText();
   if (!field) return null;
   const { info, error, appliedAtFrame, value, draft } = field;
+  const name = info.name.replaceAll('_', ' ');
   const may = mayEdit(info);
+  // Who may never change it sees what it is, and no control.
+  const readOnly = may === 'viewer' || may === 'engineersOnly';
   const initial = plainOf(info.initial);
   const changed = initial !== undefined && initial !== value;
   const notes = [
@@ -36,9 +39,25 @@ export const ParameterField = memo(function ParameterField(props: Props) {
   return (
     <div className={classes.field} data-testid={`parameter-${path}`} data-pending={draft !== undefined}>
       <div className={classes.fieldHead}>
-        <label htmlFor={id} title={info.doc}>
-          {info.name.replaceAll('_', ' ')}
-        </label>
+        {readOnly ? (
+          <>
+            <span className={classes.name} title={info.doc}>
+              {name}
+            </span>
+            <span className={classes.value} data-testid="value">
+              {textOf(info, value)}
+            </span>
+          </>
+        ) : (
+          <label className={classes.name} htmlFor={id} title={info.doc}>
+            {name}
+          </label>
+        )}
+        {draft !== undefined && (
+          <span className={classes.pending} data-testid="pending">
+            {t('form.pending', { value: textOf(info, draft) })}
+          </span>
+        )}
         {appliedAtFrame !== undefined && error === '' && (
           <span className={classes.applied} data-testid="applied">
             {t('form.applied', { frame: appliedAtFrame.toString() })}
@@ -48,7 +67,7 @@ export const ParameterField = memo(function ParameterField(props: Props) {
           <ActionIcon
             size="xs"
             variant="subtle"
-            title={t('form.reset', { value: String(initial) })}
+            title={t('form.reset', { value: textOf(info, initial) })}
             aria-label={t('form.resetOf', { name: info.name })}
             onClick={() => void editor.reset([path])}
           >
@@ -56,7 +75,14 @@ export const ParameterField = memo(function ParameterField(props: Props) {
           </ActionIcon>
         )}
       </div>
-      <Control field={field} id={id} disabled={may !== 'yes'} onEdit={(next) => editor.edit(path, next)} />
+      {!readOnly && (
+        <ParameterControl
+          field={field}
+          id={id}
+          disabled={may !== 'yes'}
+          onEdit={(next) => editor.edit(path, next)}
+        />
+      )}
       <div className={classes.range} id={`${id}-note`}>
         {notes.filter(Boolean).join(' · ')}
       </div>
@@ -69,48 +95,6 @@ export const ParameterField = memo(function ParameterField(props: Props) {
     </div>
   );
 });
-
-export interface ControlProps {
-  field: Field;
-  id: string;
-  disabled: boolean;
-  onEdit: (value: Field['value']) => void;
-}
-
-function Control(props: ControlProps) {
-  const { field, id, disabled, onEdit } = props;
-  const shown = field.draft ?? field.value;
-  if (isNumber(field.info)) return <NumberField {...props} />;
-  if (field.info.type === ParameterType.BOOL) {
-    return (
-      <input
-        type="checkbox"
-        role="switch"
-        id={id}
-        className={classes.checkbox}
-        checked={Boolean(shown)}
-        disabled={disabled}
-        onChange={(event) => onEdit(event.currentTarget.checked)}
-      />
-    );
-  }
-  if (field.info.type === ParameterType.CHOICE) {
-    return (
-      <select
-        id={id}
-        className={classes.input}
-        value={String(shown)}
-        disabled={disabled}
-        onChange={(event) => onEdit(event.currentTarget.value)}
-      >
-        {field.info.choices.map((choice) => (
-          <option key={choice}>{choice}</option>
-        ))}
-      </select>
-    );
-  }
-  return <TextField {...props} />;
-}
 
 /** "0 … 255 px", "at least 1", or nothing. */
 function rangeOf({ info }: Field): string {

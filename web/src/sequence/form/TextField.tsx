@@ -1,4 +1,4 @@
-import type { ControlProps } from './ParameterField';
+import type { ControlProps } from './ParameterControl';
 import { TypedText } from './TypedText';
 
 export function TextField({ field, id, disabled, onEdit }: ControlProps) {

@@ -5,11 +5,14 @@ interface Props extends Omit<InputHTMLAttributes<HTMLInputElement>, 'value' | 'a
   value: string;
   /** False when the text cannot be used; it then stays to be mended. */
   accept: (text: string) => boolean;
-  /** Arrow keys, +1 up, -1 down. */
-  onStep?: (direction: number) => void;
+  /** Arrow keys, +1 up, -1 down, from what is `typed` where that is not complete; false: see accept. */
+  onStep?: (direction: number, typed: string | undefined) => boolean;
 }
 
-/** A text that counts once it is complete: by Enter, or by leaving it. Escape gives it up. */
+/**
+ * A text that counts once it is complete: by Enter, by leaving it, or by a step. It follows `value`
+ * unless it is being typed; Escape gives up what is typed.
+ */
 export function TypedText({ value, accept, onStep, className, ...rest }: Props) {
   const [typed, setTyped] = useState<string>();
   const [faulty, setFaulty] = useState(false);
@@ -18,6 +21,10 @@ export function TypedText({ value, accept, onStep, className, ...rest }: Props) 
     const good = typed === value || accept(typed);
     setFaulty(!good);
     if (good) setTyped(undefined);
+  };
+  const giveUp = () => {
+    setTyped(undefined);
+    setFaulty(false);
   };
   return (
     <input
@@ -34,13 +41,10 @@ export function TypedText({ value, accept, onStep, className, ...rest }: Props) 
         const steps: Record<string, number> = { ArrowUp: 1, ArrowDown: -1 };
         const direction = steps[event.key];
         if (event.key === 'Enter') finish();
-        if (event.key === 'Escape') {
-          setTyped(undefined);
-          setFaulty(false);
-        }
-        if (direction !== undefined && onStep && typed === undefined) {
+        if (event.key === 'Escape') giveUp();
+        if (direction !== undefined && onStep) {
           event.preventDefault();
-          onStep(direction);
+          if (onStep(direction, typed)) giveUp();
         }
       }}
     />

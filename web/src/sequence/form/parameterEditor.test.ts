@@ -16,6 +16,8 @@ import { parseNumber, type Plain, valueOf } from './value';
 const info = (init: Partial<Omit<ParameterInfo, '$typeName' | '$unknown'>>) =>
   create(ParameterInfoSchema, { type: ParameterType.INT, min: 0, max: 255, ...init });
 
+const kInitial = 5;
+
 /** A server whose answers wait for the test. */
 class FakeParameters implements ParameterCalls {
   stored: Record<string, number> = { 'match.p1': 10, 'match.p2': 100 };
@@ -28,7 +30,11 @@ class FakeParameters implements ParameterCalls {
     const parameters = Object.entries(this.stored).map(([path, value]) =>
       create(ParameterSchema, {
         path,
-        info: info({ name: path.split('.')[1], max: this.max }),
+        info: info({
+          name: path.split('.')[1],
+          max: this.max,
+          initial: create(ValueSchema, valueOf(ParameterType.INT, kInitial)),
+        }),
         value: valueOf(ParameterType.INT, value),
       }),
     );
@@ -47,7 +53,7 @@ class FakeParameters implements ParameterCalls {
   reset(paths: string[]) {
     this.sent.push(`reset ${paths.join(' ')}`);
     return this.later(() => {
-      for (const path of paths) this.stored[path] = 1;
+      for (const path of paths) this.stored[path] = kInitial;
       return this.confirmed(paths);
     });
   }
@@ -177,9 +183,14 @@ describe('ParameterEditor', () => {
   it('resets, and forgets what was still to be sent', async () => {
     const { calls, editor } = await loaded();
     void editor.reset(['match.p1', 'match.p2']);
+    expect(editor.field('match.p1')).toMatchObject({ value: 10, draft: 5 });
     await calls.answer();
     expect(calls.sent).toEqual(['reset match.p1 match.p2']);
-    expect(editor.field('match.p1')).toMatchObject({ value: 1, appliedAtFrame: 41n });
+    expect(editor.field('match.p1')).toMatchObject({
+      value: 5,
+      draft: undefined,
+      appliedAtFrame: 41n,
+    });
   });
 });
 

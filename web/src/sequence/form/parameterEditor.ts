@@ -12,7 +12,7 @@ export interface Field {
   readonly info: ParameterInfo;
   /** What the server has confirmed. */
   readonly value: Plain;
-  /** What the user wants and the server has not answered yet: where a slider's knob is. */
+  /** What the user wants and the server has not confirmed yet; a slider's knob is there. */
   readonly draft: Plain | undefined;
   /** Why the server refused the last change; empty when it did not. */
   readonly error: string;
@@ -91,7 +91,10 @@ export class ParameterEditor {
 
   /** Sets parameters back to their initial values. */
   async reset(paths: string[]): Promise<void> {
-    for (const path of paths) this.wanted.delete(path);
+    for (const path of paths) {
+      this.wanted.delete(path);
+      this.put(path, { draft: plainOf(this.fields.get(path)?.info.initial), error: '' });
+    }
     ++this.changes;
     try {
       this.confirm(await this.calls.reset(paths));

@@ -41,7 +41,10 @@ export function RangeFields({ scene }: { scene: Scene }) {
       title={label}
       value={format.format(fixedRange?.[name] ?? 0)}
       accept={(text) => change({ [name]: parseNumber(text) ?? NaN })}
-      onStep={(direction) => change({ [name]: round((fixedRange?.[name] ?? 0) + direction * kStepM) })}
+      onStep={(direction, typed = '') => {
+        const from = parseNumber(typed) ?? fixedRange?.[name] ?? 0;
+        return change({ [name]: round(from + direction * kStepM) });
+      }}
     />
   );
 
