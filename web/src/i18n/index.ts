@@ -34,6 +34,12 @@ export async function setLanguage(language: Language): Promise<void> {
   await i18next.changeLanguage(language);
 }
 
+/** How the user writes dates in the language of the page: British, say, where the browser is so. */
+export function userLocale(): string {
+  const { language } = i18next;
+  return navigator.languages.find((tag) => tag.split('-')[0] === language) ?? language;
+}
+
 i18next.on('languageChanged', (language) => {
   document.documentElement.lang = language;
 });

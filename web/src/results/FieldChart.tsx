@@ -5,6 +5,7 @@ import { useEffect, useMemo, useRef } from 'react';
 import { useTranslation } from 'react-i18next';
 import uPlot from 'uplot';
 
+import { userLocale } from '../i18n';
 import { ErrorNote } from '../shell/ErrorNote';
 import { chartData, chartOptions, kHeightPx } from './chart';
 import { toCondition, type Selection } from './filter';
@@ -68,7 +69,7 @@ function Plot({ buckets, field }: { buckets: Bucket[]; field: string }) {
       warn: t('classes.warn'),
       fail: t('classes.fail'),
     };
-    const chart = new uPlot(chartOptions(parent.clientWidth, dark, names), data, parent);
+    const chart = new uPlot(chartOptions(parent.clientWidth, dark, names, userLocale()), data, parent);
     const resized = new ResizeObserver(() =>
       chart.setSize({ width: parent.clientWidth, height: kHeightPx }),
     );

@@ -4,6 +4,7 @@ import { useTranslation } from 'react-i18next';
 
 import { pageApi } from '../api/pageClients';
 import type { Result } from '../gen/visionserver/v1/result_pb';
+import { userLocale } from '../i18n';
 import { ErrorNote } from '../shell/ErrorNote';
 import { ClassBadge } from './ClassBadge';
 import { stateWords } from './filter';
@@ -44,10 +45,10 @@ export function ResultDetails({ resultId, onClose }: Props) {
 }
 
 function Details({ result }: { result: Result }) {
-  const { t, i18n } = useTranslation('results');
+  const { t } = useTranslation('results');
   const state = stateWords[result.resultState];
   const time = (stamp: Result['creationTime']) => (
-    <span title={utcText(stamp)}>{localText(stamp, i18n.language)}</span>
+    <span title={utcText(stamp)}>{localText(stamp, userLocale())}</span>
   );
   const files = fileFields(result);
   return (

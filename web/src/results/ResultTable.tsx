@@ -2,6 +2,7 @@ import { Anchor, Button, Stack, Table, Text } from '@mantine/core';
 import { useTranslation } from 'react-i18next';
 
 import type { Result } from '../gen/visionserver/v1/result_pb';
+import { userLocale } from '../i18n';
 import { ErrorNote } from '../shell/ErrorNote';
 import { ClassBadge } from './ClassBadge';
 import { stateWords, type Selection } from './filter';
@@ -90,8 +91,8 @@ function NewerLine({ selection, nowMs, results, onRefresh }: NewerProps) {
 const wrapAnywhere = { overflowWrap: 'anywhere' } as const;
 
 function Row({ result, onOpen }: { result: Result; onOpen: (resultId: string) => void }) {
-  const { t, i18n } = useTranslation('results');
-  const time = localText(result.creationTime, i18n.language);
+  const { t } = useTranslation('results');
+  const time = localText(result.creationTime, userLocale());
   const state = stateWords[result.resultState];
   return (
     <Table.Tr onClick={() => onOpen(result.resultId)} style={{ cursor: 'pointer' }}>

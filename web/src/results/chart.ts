@@ -3,8 +3,12 @@ import type uPlot from 'uplot';
 
 import type { Bucket } from './statements';
 import { classWords } from './filter';
+import { localTextOfMs } from './time';
+import { tickTexts } from './timeAxis';
 
 export const kHeightPx = 360;
+// For the longest text of a tick, such as "22. Nov. 2026".
+const kTickPx = 90;
 
 type ClassWord = (typeof classWords)[number];
 
@@ -34,18 +38,25 @@ export function chartOptions(
   widthPx: number,
   dark: boolean,
   names: Record<ClassWord | 'time', string>,
+  locale: string,
 ): uPlot.Options {
   const stroke = dark ? '#c9c9c9' : '#343a40';
+  const number = new Intl.NumberFormat(locale, { maximumSignificantDigits: 10 });
   const grid = { stroke: dark ? '#424242' : '#dee2e6' };
   return {
     width: widthPx,
     height: kHeightPx,
     axes: [
-      { stroke, grid },
-      { stroke, grid, size: 80 },
+      {
+        stroke,
+        grid,
+        space: kTickPx,
+        values: (_, timesS, _axis, _space, stepS) => tickTexts(timesS, stepS, locale),
+      },
+      { stroke, grid, size: 80, values: (_, values) => values.map((value) => number.format(value)) },
     ],
     series: [
-      { label: names.time },
+      { label: names.time, value: (_, timeS) => localTextOfMs(timeS === null ? undefined : timeS * 1e3, locale) },
       ...classWords.map((word) => {
         const color = colors[word][dark ? 'dark' : 'light'];
         return {

@@ -3,9 +3,14 @@ import type { Duration, Timestamp } from '@bufbuild/protobuf/wkt';
 import { timestampMs } from '@bufbuild/protobuf/wkt';
 
 // "22/11/2026, 18:31:05.123" in the user's way of writing.
-export function localText(time: Timestamp | undefined, language: string): string {
-  if (!time) return '–';
-  return new Date(timestampMs(time)).toLocaleString(language, {
+export function localText(time: Timestamp | undefined, locale: string): string {
+  return localTextOfMs(time && timestampMs(time), locale);
+}
+
+// The same of milliseconds since 1970 in UTC.
+export function localTextOfMs(ms: number | undefined, locale: string): string {
+  if (ms === undefined) return '–';
+  return new Date(ms).toLocaleString(locale, {
     year: 'numeric',
     month: '2-digit',
     day: '2-digit',

@@ -1,5 +1,5 @@
 import { type Timestamp, timestampDate } from '@bufbuild/protobuf/wkt';
-import { i18next } from '../i18n';
+import { i18next, userLocale } from '../i18n';
 
 /** What stands where there is no value. */
 export const kNone = '–';
@@ -27,9 +27,10 @@ export function formatBytes(bytes: bigint | number): string {
 /** Date and time to the second, in this machine's time zone. */
 export function formatTime(time: Timestamp | undefined): string {
   if (!time) return kNone;
-  return new Intl.DateTimeFormat(i18next.language, {
+  return new Intl.DateTimeFormat(userLocale(), {
     dateStyle: 'medium',
     timeStyle: 'medium',
+    hourCycle: 'h23',
   }).format(timestampDate(time));
 }
 
