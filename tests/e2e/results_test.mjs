@@ -6,7 +6,7 @@ import { after, before, test } from 'node:test';
 import { value } from './support/api.mjs';
 import { assertNoFaults, Browser, logIn, until } from './support/browser.mjs';
 import { liveSequence } from './support/scene.mjs';
-import { role, TestServer } from './support/server.mjs';
+import { passwordOf, role, TestServer } from './support/server.mjs';
 
 const least = 150; // more than a page of the table
 
@@ -59,6 +59,58 @@ test('the export is what SQL answers', async () => {
   );
   assert.ok(answered.length >= least);
   assert.deepEqual(exported, answered.map((row) => row.map(String)));
+  assertNoFaults(page);
+  await page.context().close();
+});
+
+test('an export during which the session ends is saved after the login', async () => {
+  const page = await openResults('?job=live');
+  await rows(page).first().waitFor();
+  const endSession = async (route) => {
+    const { sessions } = await server.admin.users.listSessions({ user: 'vera' });
+    for (const { id } of sessions) await server.admin.sessions.revokeSession({ sessionId: id });
+    await route.continue();
+  };
+  await page.route('**/ExportResults', endSession, { times: 1 });
+  const download = page.waitForEvent('download');
+  await page.getByRole('button', { name: 'Export as CSV' }).click();
+  const dialog = page.getByRole('dialog', { name: 'Log in again' });
+  await dialog.getByLabel(/^Password/).fill(passwordOf('vera'));
+  await dialog.getByRole('button', { name: 'Log in', exact: true }).click();
+  const lines = (await readFile(await (await download).path(), 'utf8')).trimEnd().split('\r\n');
+  assert.equal(lines.length - 1, await count());
+  await page.context().close();
+});
+
+test('limits of time are typed and stepped, and follow the address', async () => {
+  const page = await openResults('?range=custom');
+  const from = page.getByLabel('From');
+  // Whatever comes first, day or month, and with the hours of a morning.
+  const typed = '2026-11-11T08:30:05';
+  const chosen = (local) =>
+    until(`results from ${local}`, async () => {
+      const instant = await page.evaluate((time) => new Date(time).toISOString(), local);
+      return new URL(page.url()).searchParams.get('from') === instant;
+    });
+  await from.focus();
+  await page.keyboard.type('11112026');
+  await page.keyboard.press('ArrowRight');
+  await page.keyboard.type('083005A');
+  assert.equal(await from.inputValue(), typed);
+  assert.equal(new URL(page.url()).searchParams.get('from'), null);
+  await page.keyboard.press('Enter');
+  await chosen(typed);
+  for (let i = 0; i < 6; ++i) await page.keyboard.press('ArrowLeft');
+  await page.keyboard.press('ArrowUp');
+  const stepped = await from.inputValue();
+  assert.match(stepped, /^2026-(11-12|12-11)T08:30:05$/);
+  await chosen(stepped);
+  await page.keyboard.type('01');
+  assert.match(await from.inputValue(), /^2026-(11-01|01-11)T08:30:05$/);
+  await page.keyboard.press('Escape');
+  await until('what was chosen', async () => (await from.inputValue()) === stepped);
+  await page.goBack();
+  await until('the field to follow', async () => (await from.inputValue()) === typed);
   assertNoFaults(page);
   await page.context().close();
 });

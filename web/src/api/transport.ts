@@ -1,10 +1,10 @@
 import type { Interceptor, StreamResponse } from '@connectrpc/connect';
 import { createGrpcWebTransport } from '@connectrpc/connect-web';
+import { acrossLogins } from './acrossLogins';
 import { noteFailure } from './connection';
 import { isUnauthenticated, reasonOf } from './errors';
 import { useSession } from './session';
 import { withoutDeadline, withTimeLimit } from './timeLimit';
-import { until } from './wait';
 
 /** Tells session and connection what a failed call says about them; `token` is what it carried. */
 function note(error: unknown, token: string | undefined): void {
@@ -26,33 +26,35 @@ async function* noted(messages: StreamResponse['message'], token: string | undef
   }
 }
 
-/**
- * Gives each call the token. A unary call that is refused because the session has ended waits until
- * its user has logged in again, and is then repeated, so a page loses nothing; it fails when the user
- * logs out instead. Each attempt has the call's whole time limit. A stream fails; who opened it opens
- * it again (see `sequence/stream`).
- */
-export const withSession: Interceptor = (next) => async (request) => {
-  for (;;) {
-    const login = useSession.getState().login;
-    const isLogin = request.method.name === 'Login';
-    if (login && !isLogin) request.header.set('authorization', `Bearer ${login.token}`);
-    try {
-      const response = await next(request);
-      return response.stream
-        ? { ...response, message: noted(response.message, login?.token) }
-        : response;
-    } catch (error) {
-      if (isLogin) {
-        noteFailure(error);
-        throw error;
-      }
-      note(error, login?.token);
-      if (request.stream || !login || !isUnauthenticated(error)) throw error;
-      await until(useSession, (state) => state.login?.token !== login.token, request.signal);
-      if (useSession.getState().login?.user !== login.user) throw error;
-    }
+type Call = Parameters<ReturnType<Interceptor>>[0];
+type Answer = ReturnType<ReturnType<Interceptor>>;
+
+async function callOnce(next: (call: Call) => Answer, call: Call): Answer {
+  const token = useSession.getState().login?.token;
+  if (token) call.header.set('authorization', `Bearer ${token}`);
+  try {
+    const response = await next(call);
+    return response.stream ? { ...response, message: noted(response.message, token) } : response;
+  } catch (error) {
+    note(error, token);
+    throw error;
   }
+}
+
+/**
+ * Gives each call the token. A unary call that is refused because the session has ended is repeated
+ * after the next login; each attempt has the call's whole time limit. A stream fails; who opened it
+ * opens it again.
+ */
+export const withSession: Interceptor = (next) => async (call) => {
+  if (call.method.name === 'Login') {
+    return next(call).catch((error: unknown) => {
+      noteFailure(error);
+      throw error;
+    });
+  }
+  if (call.stream) return callOnce(next, call);
+  return acrossLogins(() => callOnce(next, call), call.signal);
 };
 
 const base = { baseUrl: window.location.origin };

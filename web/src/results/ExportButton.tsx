@@ -2,6 +2,7 @@ import { Button, Group, Text } from '@mantine/core';
 import { useEffect, useRef, useState } from 'react';
 import { useTranslation } from 'react-i18next';
 
+import { acrossLogins } from '../api/acrossLogins';
 import { pageApi } from '../api/pageClients';
 import { messageOf } from '../api/errors';
 import { download } from '../shell/download';
@@ -9,7 +10,7 @@ import { formatBytes } from '../shell/format';
 import { csvName, gatherCsv } from './csv';
 import { toFilter, type Selection } from './filter';
 
-/** Saves all selected results, up to now, as one CSV file. */
+/** Saves all selected results, up to now, as one CSV file; begins again after a new login. */
 export function ExportButton({ selection }: { selection: Selection }) {
   const { t } = useTranslation('results');
   const [bytes, setBytes] = useState<number>();
@@ -21,17 +22,18 @@ export function ExportButton({ selection }: { selection: Selection }) {
   const start = async () => {
     const controller = new AbortController();
     running.current = controller;
+    const { signal } = controller;
     setFailure('');
-    setBytes(0);
     try {
       const now = new Date();
-      const pieces = pageApi.results.exportResults(
-        { filter: toFilter(selection, now.getTime()) },
-        { signal: controller.signal },
-      );
-      download(csvName(now), await gatherCsv(pieces, setBytes));
+      const filter = toFilter(selection, now.getTime());
+      const csv = await acrossLogins(() => {
+        setBytes(0);
+        return gatherCsv(pageApi.results.exportResults({ filter }, { signal }), setBytes);
+      }, signal);
+      download(csvName(now), csv);
     } catch (error) {
-      if (!controller.signal.aborted) setFailure(messageOf(error));
+      if (!signal.aborted) setFailure(messageOf(error));
     } finally {
       setBytes(undefined);
     }

@@ -1,12 +1,11 @@
-import { Autocomplete, Button, Group, NativeSelect, TextInput } from '@mantine/core';
+import { Button, Group, NativeSelect } from '@mantine/core';
 import { useQuery } from '@tanstack/react-query';
-import { useState } from 'react';
 import { useTranslation } from 'react-i18next';
 
 import { api } from '../api/clients';
 import { ResultClass, ResultState } from '../gen/visionserver/v1/result_pb';
 import { classWords, everything, ranges, stateWords, type Range, type Selection } from './filter';
-import { fromLocalInput, toLocalInput } from './time';
+import { InstantInput, WordInput } from './SelectionInputs';
 
 interface Props {
   selection: Selection;
@@ -75,58 +74,5 @@ export function SelectionBar({ selection, onChange, onRefresh }: Props) {
       </Button>
       <Button onClick={onRefresh}>{t('refresh')}</Button>
     </Group>
-  );
-}
-
-interface WordProps {
-  label: string;
-  value: string;
-  onChange: (value: string) => void;
-  choices?: string[];
-}
-
-// Takes effect with Enter, a choice, or when left: not with each letter, which would ask the server.
-function WordInput({ label, value, onChange, choices = [] }: WordProps) {
-  const [draft, setDraft] = useState(value);
-  const [shown, setShown] = useState(value);
-  if (value !== shown) {
-    setShown(value);
-    setDraft(value);
-  }
-  const commit = (text: string) => {
-    if (text.trim() !== value) onChange(text.trim());
-  };
-  return (
-    <Autocomplete
-      w={140}
-      label={label}
-      data={choices}
-      value={draft}
-      onChange={setDraft}
-      onOptionSubmit={commit}
-      onBlur={() => commit(draft)}
-      onKeyDown={(event) => {
-        if (event.key === 'Enter') commit(event.currentTarget.value);
-      }}
-    />
-  );
-}
-
-interface InstantProps {
-  label: string;
-  ms: number | undefined;
-  onChange: (ms: number | undefined) => void;
-}
-
-function InstantInput({ label, ms, onChange }: InstantProps) {
-  return (
-    <TextInput
-      type="datetime-local"
-      step={1}
-      label={label}
-      title={ms === undefined ? undefined : new Date(ms).toISOString()}
-      defaultValue={toLocalInput(ms)}
-      onBlur={(event) => onChange(fromLocalInput(event.currentTarget.value))}
-    />
   );
 }
