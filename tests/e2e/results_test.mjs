@@ -156,6 +156,35 @@ test('a link keeps the filter, and newer results are offered, not pushed', async
   await page.context().close();
 });
 
+test('what is searched for is found, and everything again after a reset', async () => {
+  const page = await openResults();
+  await rows(page).first().waitFor();
+  const search = page.getByRole('search');
+  await search.getByLabel('Class').selectOption('fail');
+  await page.getByText('No results match').waitFor();
+  await search.getByLabel('State').selectOption('completed');
+  await search.getByLabel('Job').fill('another');
+  await search.getByLabel('Job').press('Enter');
+  await until('the filters in the address', () => {
+    const { searchParams } = new URL(page.url());
+    return searchParams.get('job') === 'another' && searchParams.get('state') === 'completed';
+  });
+
+  await search.getByRole('button', { name: 'Reset filter' }).click();
+  await rows(page).first().waitFor();
+  assert.deepEqual([...new URL(page.url()).searchParams.keys()], []);
+  assert.equal(await search.getByLabel('Job').inputValue(), '');
+
+  await search.getByLabel('Job').fill('live');
+  await search.getByLabel('Job').press('Enter');
+  await search.getByLabel('Class').selectOption('pass');
+  const [[found]] = await ask("SELECT count(*) FROM result WHERE job_id = 'live' AND result_class = 'pass'");
+  await until('the found ones to be counted', async () =>
+    (await page.getByLabel('Yield').innerText()).replace(/[\s,]+/g, ' ').includes(`Results ${found} `),
+  );
+  await page.context().close();
+});
+
 test('a row opens its record with its picture', async () => {
   const [[number, id]] = await ask(
     "SELECT number, result_id FROM result WHERE fields ->> 'picture' LIKE '%.png' ORDER BY number DESC LIMIT 1",
