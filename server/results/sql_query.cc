@@ -183,7 +183,7 @@ struct SqlQuery::Watch {
   const SqlLimits& limits;
   const std::function<bool()>& cancelled;
   int64_t end_ns;
-  int64_t memory_before = INT64_MAX;  // what is used while it waits for its turn does not count
+  int64_t most_bytes = INT64_MAX;  // of this thread; none while the statement waits for its turn
   Status stopped_because{};
 
   // Not zero: SQLite interrupts the statement.
@@ -198,7 +198,7 @@ struct SqlQuery::Watch {
       return DeadlineExceeded(Str("the query took longer than ", limits.timeout.count(),
                                   " ms: ask for less, or for a longer timeout"));
     }
-    if (SqliteBytesOfThread() - memory_before > static_cast<int64_t>(limits.max_work_bytes)) {
+    if (SqliteBytesOfThread() > most_bytes) {
       return ResourceExhausted(Str("the query needs more than ", limits.max_work_bytes >> 20,
                                    " MB of memory: sort or group less"));
     }
@@ -227,7 +227,7 @@ class SqlQuery::Turn {
   // `database` is one of `query`, to which it goes back. `watch` outlives this.
   Turn(SqlQuery& query, Database database, Watch& watch)
       : query_(query), database_(std::move(database)) {
-    watch.memory_before = SqliteBytesOfThread();
+    watch.most_bytes = SqliteBytesOfThread() + static_cast<int64_t>(watch.limits.max_work_bytes);
     sqlite3_progress_handler(database_.handle(), kStepsBetweenChecks, &Watch::Look, &watch);
   }
   ~Turn() {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <atomic>
 #include <cstdint>
@@ -205,6 +206,18 @@ TEST_F(SqlQueryTest, AGreedyQueryEndsAtItsMemoryLimit) {
   EXPECT_EQ(StatusCode::kResourceExhausted, Run("SELECT zeroblob(2000000)").error().code());
   EXPECT_EQ(StatusCode::kResourceExhausted,
             Run("SELECT zeroblob(1000000) FROM result").error().code());
+}
+
+// Connections go from thread to thread, and with them memory that another one has taken.
+TEST_F(SqlQueryTest, AThreadThatGaveBackMoreThanItTookStillAnswers) {
+  void* memory = sqlite3_malloc(1'000'000);
+  Status answered;
+  std::thread([&] {
+    sqlite3_free(memory);
+    const auto answer = Run("SELECT 1");
+    if (!answer.has_value()) answered = answer.error();
+  }).join();
+  EXPECT_TRUE(answered.ok()) << answered.ToString();
 }
 
 TEST_F(SqlQueryTest, ACancelledQueryEndsAndTheOneBehindItGetsItsTurn) {
