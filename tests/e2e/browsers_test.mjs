@@ -81,6 +81,27 @@ test('three browsers show the newest frame, each for itself', async () => {
   await until('no subscription when all are closed', async () => (await subscribers()) === 0);
 });
 
+test('picture and map on the screen are of the same frame', async () => {
+  const page = await browser.newPage();
+  await logIn(page, server, 'admin', '/sequence/live');
+  await waitForNextFrame(page);
+  await page.getByTestId('view-map').evaluate((map) => {
+    window.pairs = [];
+    const picture = document.querySelector('[data-testid="view-picture"]');
+    const note = () => window.pairs.push([map.dataset.frame, picture.dataset.frame]);
+    new MutationObserver(note).observe(map, { attributeFilter: ['data-frame'] });
+  });
+  const pairs = await until('100 maps', async () => {
+    const all = await page.evaluate(() => window.pairs);
+    return all.length >= 100 && all;
+  });
+  const good = pairs.filter(([map, picture]) => map === picture).length;
+  console.log(`${good} of ${pairs.length} maps on the screen with the picture of their frame`);
+  // Streams may leave out different frames where the machine is busy.
+  assert.ok(good > pairs.length / 2);
+  await page.context().close();
+});
+
 test('a page that draws five times a second shows what is newest, and counts the rest', async () => {
   const page = await browser.newPage();
   await page.addInitScript(() => {

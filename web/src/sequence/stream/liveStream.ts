@@ -1,3 +1,4 @@
+import { Track, type Waiting } from './framePairs';
 import type { Multiplexer, Subscribed, Wanted } from './multiplexer';
 import type { StreamItem } from './transport';
 import { type Figures, Statistics } from './statistics';
@@ -17,13 +18,15 @@ export interface LiveOptions<T> {
   wanted: Wanted;
   decode(item: StreamItem): Promise<T>;
   draw(picture: T): void;
+  /** Where it waits for being drawn; without, the newest is drawn in the next animation frame. */
+  track?: Pick<Track, 'offer' | 'clear'>;
   /** Gives back what a picture holds that is not drawn. */
   release?(picture: T): void;
   /** Why nothing comes; empty once something comes. */
   onNotice?(text: string): void;
 }
 
-interface Waiting<T> {
+interface Decoded<T> {
   item: StreamItem;
   decoding_ms: number;
   picture: T;
@@ -43,8 +46,9 @@ const kWindow = 2;
 const kGatheringWindow = 5;
 
 /**
- * One stream on the screen: takes items, decodes them, draws the newest in the next animation frame
- * and then acknowledges it. What is passed over on the way is acknowledged at once, and counted.
+ * One stream on the screen: takes items, decodes them, draws the newest in the next animation frame,
+ * or together with another stream's, and then acknowledges it. What waits longer is acknowledged
+ * before; what is passed over on the way at once, and counted.
  */
 export class LiveStream<T> {
   private readonly statistics = new Statistics();
@@ -52,7 +56,7 @@ export class LiveStream<T> {
   private wanted: Wanted;
   private undecoded: { item: StreamItem; received_ms: number } | undefined;
   private decoding = false;
-  private waiting: Waiting<T> | undefined;
+  private readonly track: Pick<Track, 'offer' | 'clear'>;
   // Of the last few pictures; undefined before the first.
   private work_ms: number | undefined;
   private latency_ms: number | undefined;
@@ -64,6 +68,7 @@ export class LiveStream<T> {
     private readonly options: LiveOptions<T>,
     private readonly surroundings: Surroundings,
   ) {
+    this.track = options.track ?? newestOnly(surroundings);
     this.wanted = { window: kWindow, ...options.wanted };
     this.subscribed = mux.subscribe(this.wanted, {
       onItem: (item) => this.onItem(item),
@@ -75,11 +80,16 @@ export class LiveStream<T> {
     return this.statistics.figures(this.surroundings.now_ms());
   }
 
+  /** Asks for the same stream in another way; the window stays what it is. */
+  change(wanted: Wanted): void {
+    this.wanted = { window: this.wanted.window, ...wanted };
+    this.subscribed.change(this.wanted);
+  }
+
   end(): void {
     this.ended = true;
     this.subscribed.end();
-    if (this.waiting) this.options.release?.(this.waiting.picture);
-    this.waiting = undefined;
+    this.track.clear();
   }
 
   private onItem(item: StreamItem): void {
@@ -106,38 +116,45 @@ export class LiveStream<T> {
     this.decoding = false;
   }
 
-  private offer(next: Waiting<T>): void {
+  private offer(next: Decoded<T>): void {
+    const { item, picture } = next;
     if (this.ended) {
-      this.options.release?.(next.picture);
+      this.options.release?.(picture);
       return;
     }
-    if (this.waiting) {
-      this.options.release?.(this.waiting.picture);
-      this.passOver(this.waiting.item);
-    } else {
-      this.surroundings.nextFrame(() => this.drawNewest());
-    }
-    this.waiting = next;
+    let acknowledged = false;
+    const acknowledge = () => {
+      if (!acknowledged) this.subscribed.acknowledge(item.seq);
+      acknowledged = true;
+    };
+    this.track.offer({
+      frameNumber: item.header?.frameNumber ?? 0n,
+      draw: () => this.draw(next, acknowledge),
+      keep: acknowledge,
+      passOver: () => {
+        this.options.release?.(picture);
+        this.statistics.onDropped(1);
+        acknowledge();
+      },
+    } satisfies Waiting);
   }
 
-  private drawNewest(): void {
-    const { waiting } = this;
-    if (!waiting || this.ended) return;
-    this.waiting = undefined;
+  private draw({ item, decoding_ms, picture }: Decoded<T>, acknowledge: () => void): void {
     const begin_ms = this.surroundings.now_ms();
     try {
-      this.options.draw(waiting.picture);
+      this.options.draw(picture);
     } catch (error) {
       // What is not acknowledged would hold its place in the window for ever.
-      this.passOver(waiting.item);
+      this.statistics.onDropped(1);
+      acknowledge();
       this.setNotice(textOf(error));
       return;
     }
     const now_ms = this.surroundings.now_ms();
-    const latency_ms = this.latencyOf(waiting.item);
+    const latency_ms = this.latencyOf(item);
     this.statistics.onDrawn(now_ms, latency_ms);
-    this.subscribed.acknowledge(waiting.item.seq);
-    this.adapt(waiting.decoding_ms + now_ms - begin_ms, latency_ms);
+    acknowledge();
+    this.adapt(decoding_ms + now_ms - begin_ms, latency_ms);
   }
 
   private latencyOf(item: StreamItem): number | undefined {
@@ -176,6 +193,20 @@ export class LiveStream<T> {
     this.notice = text;
     this.options.onNotice?.(text);
   }
+}
+
+/** Draws the newest in the next animation frame. */
+function newestOnly(surroundings: Surroundings): Track {
+  let asked = false;
+  const track = new Track(1, () => {
+    if (asked) return;
+    asked = true;
+    surroundings.nextFrame(() => {
+      asked = false;
+      if (track.newest !== undefined) track.showUpTo(track.newest);
+    });
+  });
+  return track;
 }
 
 /** A mean of the last few values, the newest one counting most. */

@@ -47,7 +47,7 @@ export interface Timers {
   after(delay_ms: number, call: () => void): () => void;
 }
 
-const browserTimers: Timers = {
+export const browserTimers: Timers = {
   after: (delay_ms, call) => {
     const timer = setTimeout(call, delay_ms);
     return () => clearTimeout(timer);
