@@ -23,7 +23,11 @@ export class Decoder {
       const { bitmap } = reply;
       return { ...base, kind: 'picture', bitmap, exact: header.codec === Codec.RAW };
     }
-    if (reply.kind === 'error') throw new DecodeError(reply.message);
+    if (reply.kind === 'error') {
+      throw new DecodeError(
+        `frame ${header.frameNumber} cannot be unpacked: ${reply.message}; if this stays, load the page again`,
+      );
+    }
     if (!header.geometry) throw new DecodeError('the map comes without its geometry');
     return {
       ...base,
