@@ -55,3 +55,22 @@ export async function shownPixels(page) {
     },
   };
 }
+
+/** An element as it is on the screen; `at` gives red, green and blue of a CSS pixel of it. */
+export async function screenPixels(page, element) {
+  const file = await element.screenshot();
+  const { width, height, bytes } = await page.evaluate(async (packed) => {
+    const png = Uint8Array.from(atob(packed), (letter) => letter.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([png], { type: 'image/png' }));
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+    context.drawImage(bitmap, 0, 0);
+    const { data, width, height } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    let bytes = '';
+    for (let i = 0; i < data.length; i += 4096) bytes += String.fromCharCode(...data.subarray(i, i + 4096));
+    return { width, height, bytes: btoa(bytes) };
+  }, file.toString('base64'));
+  const rgba = Buffer.from(bytes, 'base64');
+  const at = (x, y) => rgba.subarray(4 * (y * width + x), 4 * (y * width + x) + 3);
+  const all = () => Array.from({ length: width * height }, (_, i) => rgba.subarray(4 * i, 4 * i + 3));
+  return { width, height, at, all };
+}

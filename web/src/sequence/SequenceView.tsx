@@ -68,7 +68,12 @@ export function SequenceView({ sequence: { id }, spec, blockTypes }: Props) {
           </Tabs.Panel>
           <Tabs.Panel value="cloud" className={classes.panel}>
             <Suspense fallback={<Loader />}>
-              <CloudPanel scene={scene} measuring={measuring} setMeasuring={setMeasuring} />
+              <CloudPanel
+                sequence={id}
+                scene={scene}
+                measuring={measuring}
+                setMeasuring={setMeasuring}
+              />
             </Suspense>
           </Tabs.Panel>
           <Tabs.Panel value="graph" className={classes.panel}>

@@ -1,8 +1,11 @@
 import { Alert, Button, Group, Switch } from '@mantine/core';
 import { useEffect, useRef, useState } from 'react';
 import { useTranslation } from 'react-i18next';
+import { SaveMenu } from '../save/SaveMenu';
+import { ColorBar } from '../view/ColorBar';
 import type { LiveScene } from '../view/liveScene';
 import { MeasureButton } from '../view/MeasureButton';
+import { RangeFields } from '../view/RangeFields';
 import { StaleOverlay } from '../view/StaleOverlay';
 import { Choice } from '../view/Choice';
 import { ColorMapChoice } from '../view/ColorMapChoice';
@@ -13,13 +16,14 @@ import { useCloudMeasuring } from './useCloudMeasuring';
 import { webGl } from './webGl';
 
 interface Props {
+  sequence: string;
   scene: LiveScene;
   measuring: boolean;
   setMeasuring: (measuring: boolean) => void;
 }
 
 /** The newest map as points in space. */
-export default function CloudPanel({ scene, measuring, setMeasuring }: Props) {
+export default function CloudPanel({ sequence, scene, measuring, setMeasuring }: Props) {
   const { t } = useTranslation('sequence');
   const host = useRef<HTMLDivElement>(null);
   const renderer = useRef<CloudRenderer>(undefined);
@@ -53,6 +57,7 @@ export default function CloudPanel({ scene, measuring, setMeasuring }: Props) {
 
   useCloudMeasuring(host, renderer, scene, measuring);
 
+  const byDepth = options.coloring === 'depth';
   if (drawnBy === 'none') return <Alert color="yellow">{t('cloud.noWebGl')}</Alert>;
   return (
     <>
@@ -64,6 +69,7 @@ export default function CloudPanel({ scene, measuring, setMeasuring }: Props) {
           onChoose={(coloring) => change({ coloring })}
         />
         {options.coloring !== 'picture' && <ColorMapChoice />}
+        {byDepth && <RangeFields scene={scene} />}
         <Choice
           label={t('cloud.density')}
           value={String(options.step)}
@@ -94,22 +100,26 @@ export default function CloudPanel({ scene, measuring, setMeasuring }: Props) {
           {t('cloud.reset')}
         </Button>
         <MeasureButton scene={scene} on={measuring} setOn={setMeasuring} />
+        <SaveMenu sequence={sequence} scene={scene} />
       </Group>
-      <div className={classes.box}>
-        <div
-          ref={host}
-          className={classes.cloud}
-          tabIndex={0}
-          role="img"
-          aria-label={t('cloud.label')}
-          data-testid="view-cloud"
-          onKeyDown={(event) => {
-            if (event.key === '+' || event.key === '=') renderer.current?.zoom(true);
-            if (event.key === '-') renderer.current?.zoom(false);
-            if (event.key === '0') renderer.current?.reset();
-          }}
-        />
-        <StaleOverlay scene={scene} view="map" />
+      <div className={classes.row}>
+        <div className={classes.box}>
+          <div
+            ref={host}
+            className={classes.cloud}
+            tabIndex={0}
+            role="img"
+            aria-label={t('cloud.label')}
+            data-testid="view-cloud"
+            onKeyDown={(event) => {
+              if (event.key === '+' || event.key === '=') renderer.current?.zoom(true);
+              if (event.key === '-') renderer.current?.zoom(false);
+              if (event.key === '0') renderer.current?.reset();
+            }}
+          />
+          <StaleOverlay scene={scene} view="map" />
+        </div>
+        {byDepth && <ColorBar scene={scene} />}
       </div>
       <p className={classes.help}>{t('cloud.help')}</p>
     </>
