@@ -9,12 +9,13 @@ import { assertNoFaults, Browser, logIn, until } from './support/browser.mjs';
 import { waitForNextFrame } from './support/canvas.mjs';
 import { stillSequence, writeScene } from './support/scene.mjs';
 import { TestServer } from './support/server.mjs';
-import { followSubscriptions } from './support/subscriptions.mjs';
+import { countSubscribes, followSubscriptions } from './support/subscriptions.mjs';
 
 let server;
 let browser;
 let page;
 let watched;
+let subscribes;
 let scene;
 let sequence;
 before(async () => {
@@ -27,6 +28,7 @@ before(async () => {
   browser = await Browser.launch();
   page = await browser.newPage({ viewport: { width: 1600, height: 900 } });
   watched = followSubscriptions(page);
+  subscribes = await countSubscribes(page);
   await logIn(page, server, 'admin', '/sequence/still');
   await waitForNextFrame(page);
 });
@@ -140,6 +142,27 @@ test('the blocks show times and pictures, which end with their tab', async () =>
   for (const { method, failed } of methods.filter(({ method }) => /StreamService/.test(method))) {
     assert.equal(failed, 0n, method);
   }
+});
+
+test('a tab never has more than one Subscribe, whatever it shows', async () => {
+  for (const [tab, view] of [
+    ['Point cloud', 'view-cloud'],
+    ['Blocks', 'preview-match.disparity'],
+    ['Pictures', 'view-map'],
+  ]) {
+    await page.getByRole('tab', { name: tab }).click();
+    await until(`a picture on the tab ${tab}`, () => page.getByTestId(view).getAttribute('data-frame'));
+    assert.equal((await subscribes()).open, 1, tab);
+  }
+  // Away from what is live, and back.
+  for (const place of ['Overview', 'Results']) {
+    await page.getByRole('navigation').getByRole('link', { name: place }).click();
+    await until(`no stream on the page ${place}`, async () => (await subscribes()).open === 0);
+    await page.goBack();
+    await until('a picture', () => page.getByTestId('view-map').getAttribute('data-frame'));
+    assert.equal((await subscribes()).open, 1, place);
+  }
+  assert.equal((await subscribes()).mostAtOnce, 1);
 });
 
 test('a parameter is set with the keyboard alone', async () => {
