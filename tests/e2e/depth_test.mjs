@@ -2,10 +2,11 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 
-import { assertNoFaults, Browser, logIn, until } from './support/browser.mjs';
-import { shownPixels, waitForNextFrame } from './support/canvas.mjs';
+import { assertNoFaults, Browser, logIn, picture, until } from './support/browser.mjs';
+import { screenPixels, shownPixels, waitForNextFrame } from './support/canvas.mjs';
 import { stillSequence, writeScene } from './support/scene.mjs';
 import { TestServer } from './support/server.mjs';
+import { followSubscriptions } from './support/subscriptions.mjs';
 
 const [near_m, far_m] = [0.5, 2];
 
@@ -13,6 +14,7 @@ let server;
 let browser;
 let page;
 let scene;
+let subscriptions;
 before(async () => {
   server = new TestServer();
   scene = writeScene(server.pictures);
@@ -21,6 +23,7 @@ before(async () => {
   await server.setUp();
   browser = await Browser.launch();
   page = await browser.newPage({ viewport: { width: 1600, height: 900 } });
+  subscriptions = followSubscriptions(page);
   await page.addInitScript(
     (display) => localStorage.setItem('visionserver.display', JSON.stringify(display)),
     { state: { colorMap: 'grey', fixedRange: { near_m, far_m }, showReasons: false }, version: 0 },
@@ -32,6 +35,14 @@ after(async () => {
   await browser?.close();
   await server?.end();
 });
+
+/** Where the map lies on its canvas: its upper left corner, and CSS pixels for one of it. */
+const lie = (map) =>
+  map.evaluate(({ dataset }) => ({
+    left: Number(dataset.left),
+    top: Number(dataset.top),
+    scale: Number(dataset.scale),
+  }));
 
 /** The pixels that both cameras see, with their true depth, within the range of the colours. */
 function* seenPixels() {
@@ -66,11 +77,7 @@ test('the grey of each pixel is the true disparity', async () => {
 test('what the inspector reads is the truth within 2 %', async () => {
   const map = page.getByTestId('view-map');
   const box = await map.boundingBox();
-  const { left, top, scale } = await map.evaluate(({ dataset }) => ({
-    left: Number(dataset.left),
-    top: Number(dataset.top),
-    scale: Number(dataset.scale),
-  }));
+  const { left, top, scale } = await lie(map);
   const read = async (field) => {
     const text = await page.getByTestId(`inspector-${field}`).textContent();
     return Number.parseFloat(text);
@@ -94,7 +101,90 @@ test('what the inspector reads is the truth within 2 %', async () => {
     const Y_m = ((y - scene.center_y_px) * depth_m) / scene.focal_px;
     assert.ok(Math.abs((await read('X')) - X_m) < 0.02 * Math.abs(X_m) + 0.001);
     assert.ok(Math.abs((await read('Y')) - Y_m) < 0.02 * Math.abs(Y_m) + 0.001);
+    assert.ok(Math.abs((await read('Z')) - depth_m) < 0.02 * depth_m);
+    // On the server's own machine the picture is not packed, so that its values are exact.
+    assert.equal(await page.getByTestId('inspector-grey').textContent(), String(scene.grey(x, y)));
   }
+});
+
+test('invalid pixels have the colours of their reasons, which the legend explains', async () => {
+  const watched = () => subscriptions(({ stream, includeReasons }) => `${stream} ${includeReasons}`);
+  const away = () => page.mouse.move(1, 1);
+  // With colours, so that those of the reasons, some of which are grey, are nowhere else.
+  const colors = page.getByRole('combobox', { name: 'Colours', exact: true });
+  await colors.selectOption('turbo');
+  await away();
+  await until('a map without reasons', () => watched().includes('still/depth false'));
+  const map = page.getByTestId('view-map');
+  const before = await screenPixels(page, map);
+
+  const choice = page.getByRole('switch', { name: 'Reasons of invalid pixels' });
+  await choice.click();
+  const legend = page.getByTestId('reason-legend').getByRole('listitem');
+  await legend.first().waitFor();
+  assert.ok(watched().includes('still/depth true'));
+  await waitForNextFrame(page);
+  const entries = await legend.evaluateAll((items) =>
+    items.map((item) => {
+      const [, name, percent] = item.textContent.match(/^ ?(.*?) ([\d.]+)%$/);
+      const color = getComputedStyle(item.querySelector('span')).backgroundColor.match(/\d+/g).map(Number);
+      return { name, share: Number(percent) / 100, color };
+    }),
+  );
+  console.log(entries.map(({ name, share }) => `${name} ${(100 * share).toFixed(1)} %`).join(', '));
+  const shareOf = (pixels, [red, green, blue]) => {
+    const all = pixels.all();
+    return all.filter(([r, g, b]) => r === red && g === green && b === blue).length / all.length;
+  };
+  const after = await screenPixels(page, map);
+  const [most] = entries;
+  assert.ok(shareOf(before, most.color) < 0.001);
+  // The view is larger than the picture, and pixels at edges are mixed.
+  const seen = await lie(map);
+  const ofView = (scene.width * scene.height * seen.scale ** 2) / (after.width * after.height);
+  const shown = shareOf(after, most.color) / ofView;
+  console.log(`${most.name}: ${(100 * shown).toFixed(1)} % of the map on the screen`);
+  assert.ok(shown > 0.4 * most.share && shown < 1.1 * most.share);
+
+  // The inspector has the reason also when the overlay is off.
+  await choice.click();
+  await legend.first().waitFor({ state: 'detached' });
+  await away();
+  await until('a map without reasons', () => watched().includes('still/depth false'));
+  const isMost = (pixel) => pixel.every((value, c) => value === most.color[c]);
+  const inside = after.all().findIndex((_, i) => {
+    const [x, y] = [i % after.width, Math.floor(i / after.width)];
+    if (x < 5 || y < 5 || x >= after.width - 5 || y >= after.height - 5) return false;
+    return [[0, 0], [5, 0], [-5, 0], [0, 5], [0, -5]].every(([dx, dy]) => isMost(after.at(x + dx, y + dy)));
+  });
+  const x = Math.floor(((inside % after.width) - seen.left) / seen.scale);
+  const y = Math.floor((Math.floor(inside / after.width) - seen.top) / seen.scale);
+  // Without the legend the view is higher.
+  const [box, now] = [await map.boundingBox(), await lie(map)];
+  await page.mouse.move(box.x + now.left + (x + 0.5) * now.scale, box.y + now.top + (y + 0.5) * now.scale);
+  const reason = page.getByTestId('inspector-reason');
+  await until('the reason', async () => (await reason.textContent()) === most.name);
+  assert.equal(await page.getByTestId('inspector-depth').textContent(), '–');
+  await colors.selectOption('grey');
+});
+
+test('pictures that do not come any more are covered, and say for how long', async () => {
+  const stale = page.getByText(/^No picture for \d+ s$/);
+  assert.equal(await stale.count(), 0);
+  const fresh = await screenPixels(page, page.getByTestId('view-picture'));
+  await server.admin.sequences.stopSequence({ id: 'still' });
+  await until('both views covered', async () => (await stale.count()) === 2);
+  const seconds = async () => Number((await stale.first().textContent()).match(/\d+/)[0]);
+  const first = await seconds();
+  assert.ok(first >= 1, `${first} s`);
+  await until('more seconds', async () => (await seconds()) > first);
+  // It is seen: the picture beneath is darker.
+  const covered = await screenPixels(page, page.getByTestId('view-picture'));
+  const mean = (pixels) => pixels.all().reduce((sum, [red]) => sum + red, 0) / pixels.all().length;
+  assert.ok(mean(covered) < 0.6 * mean(fresh), `${mean(covered)} after ${mean(fresh)}`);
+  await picture(page, 'stale');
+  await server.admin.sequences.startSequence({ id: 'still' });
+  await until('pictures again', async () => (await stale.count()) === 0);
 });
 
 test('a slider changes the picture', async () => {

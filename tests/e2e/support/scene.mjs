@@ -14,7 +14,14 @@ export function writeScene(folder, binning = 2) {
   const depth_m = (x, y) =>
     (geometry.focal_px * geometry.baseline_m) /
     (disparity_px[y * geometry.width + x] + geometry.offset_px);
-  return { ...geometry, disparity_px, depth_m };
+  return { ...geometry, disparity_px, depth_m, grey: greyOf(join(folder, 'left.pgm')) };
+}
+
+/** The grey at (x, y) of a binary PGM file. */
+function greyOf(file) {
+  const bytes = readFileSync(file);
+  const [header, width] = bytes.toString('latin1', 0, 40).match(/^P5\s+(\d+)\s+\d+\s+255\s/);
+  return (x, y) => bytes[header.length + y * Number(width) + x];
 }
 
 const block = (id, type, params = {}) => ({ id, type, params, x: 0, y: 0 });
