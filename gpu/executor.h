@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+#include "engine/base/status.h"
+#include "engine/image/disparity_map.h"
+#include "engine/image/image.h"
+#include "engine/stereo/sgm_settings.h"
+
+namespace vs::gpu {
+
+// Carries frames, one after the other, through all stages on one device. Not thread-safe; errors
+// leave it as it is, and after UNAVAILABLE (the device is in no state to go on) it is of no more
+// use.
+class Executor {
+ public:
+  virtual ~Executor() = default;
+
+  // Makes room for frames of this size and with these valid settings; nothing happens if that was
+  // done last. RESOURCE_EXHAUSTED says how many bytes are needed and how many there are.
+  virtual Status Prepare(const SgmSettings& settings, int width, int height) = 0;
+  // One frame: up go two pictures of the prepared size, down comes `map`, which has room for it.
+  virtual Status Run(const GreyImage& left, const GreyImage& right, DisparityMap* map) = 0;
+  // Memory of the device that it holds.
+  virtual size_t DeviceBytes() const = 0;
+};
+
+// Makes the executor of a device by its index. NOT_FOUND if there is no such device.
+using ExecutorFactory = std::function<Result<std::unique_ptr<Executor>>(int device)>;
+
+}  // namespace vs::gpu
