@@ -12,6 +12,7 @@
 
 #define VS_KERNEL inline void
 #define VS_DEVICE inline
+#define VS_HOST_DEVICE inline
 // One block runs at a time.
 #define VS_SHARED static thread_local
 

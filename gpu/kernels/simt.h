@@ -29,9 +29,9 @@ struct Grid {
 namespace vs::gpu {
 
 // Two numbers of 16 bits in one word. No sum may exceed 65535.
-VS_DEVICE uint32_t Both(uint32_t value) { return value * 0x10001U; }
-VS_DEVICE uint32_t AddPairs(uint32_t a, uint32_t b) { return a + b; }
-VS_DEVICE uint32_t SubtractPairs(uint32_t a, uint32_t b) {
+VS_HOST_DEVICE uint32_t Both(uint32_t value) { return value * 0x10001U; }
+VS_HOST_DEVICE uint32_t AddPairs(uint32_t a, uint32_t b) { return a + b; }
+VS_HOST_DEVICE uint32_t SubtractPairs(uint32_t a, uint32_t b) {
   return a - b;
 }  // no b greater than its a
 
@@ -41,17 +41,17 @@ VS_DEVICE int Lane() { return ThreadInBlock() % kWarpSize; }
 VS_DEVICE int WarpInBlock() { return ThreadInBlock() / kWarpSize; }
 VS_DEVICE int WarpsInBlock() { return ThreadsInBlock() / kWarpSize; }
 
-VS_DEVICE int Clamp(int value, int low, int high) {
+VS_HOST_DEVICE int Clamp(int value, int low, int high) {
   return value < low ? low : value > high ? high : value;
 }
 template <class T>
-VS_DEVICE T Lesser(T a, T b) {
+VS_HOST_DEVICE T Lesser(T a, T b) {
   return b < a ? b : a;
 }
 template <class T>
-VS_DEVICE T Greater(T a, T b) {
+VS_HOST_DEVICE T Greater(T a, T b) {
   return a < b ? b : a;
 }
-VS_DEVICE int Distance(int a, int b) { return a < b ? b - a : a - b; }
+VS_HOST_DEVICE int Distance(int a, int b) { return a < b ? b - a : a - b; }
 
 }  // namespace vs::gpu

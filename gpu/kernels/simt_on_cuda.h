@@ -8,6 +8,7 @@
 // Kernels are static: each unit that includes them has its own.
 #define VS_KERNEL static __global__ void
 #define VS_DEVICE __device__ __forceinline__
+#define VS_HOST_DEVICE __host__ __device__ __forceinline__
 #define VS_SHARED __shared__
 
 namespace vs::gpu {
