@@ -209,8 +209,9 @@ inline constexpr int kLinesOfPathBlock = kWarpsOfPathBlock / 2;
 template <int kCells, template <int> class Path>
 VS_KERNEL WalkPaths(const Frame frame) {
   const int group = BlockY();
-  constexpr int kBackwardFrom[] = {2, 4, 7, 8};  // with so many directions
-  const bool both = frame.settings.directions >= kBackwardFrom[group];
+  // With so many directions a group has both of its own.
+  const int enough = group < 2 ? 2 * (group + 1) : 5 + group;
+  const bool both = frame.settings.directions >= enough;
   const int line = BlockX() * kLinesOfPathBlock + WarpInBlock() / 2;
   const Way way{.width = frame.width,
                 .height = frame.height,
