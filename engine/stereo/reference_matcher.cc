@@ -8,6 +8,7 @@
 
 #include "engine/base/str.h"
 #include "engine/stereo/cell_memory.h"
+#include "engine/stereo/condition_pair.h"
 #include "engine/stereo/cost_window.h"
 #include "engine/stereo/path_cost.h"
 #include "engine/stereo/refine.h"
@@ -29,8 +30,10 @@ class ReferenceMatcher final : public StereoMatcher {
     std::vector<uint8_t> paths;
   };
 
-  Result<DisparityMap> MatchConditioned(const PicturePair& pair, const SgmSettings& settings,
-                                        int threads, BufferPool& pool) override {
+  Result<DisparityMap> MatchPair(const GreyImage& raw_left, const GreyImage& raw_right,
+                                 const SgmSettings& settings, int threads,
+                                 BufferPool& pool) override {
+    const PicturePair pair = ConditionPair(raw_left, raw_right, settings, pool);
     const GreyImage& left = pair.left;
     const GreyImage& right = pair.right;
     const int width = left.width();

@@ -13,7 +13,7 @@ Result<DisparityMap> StereoMatcher::Match(const GreyImage& left, const GreyImage
                                           BufferPool& pool) {
   VS_RETURN_IF_ERROR(ValidateSettings(settings));
   VS_RETURN_IF_ERROR(ValidatePair(left, right));
-  return MatchConditioned(ConditionPair(left, right, settings, pool), settings, threads, pool);
+  return MatchPair(left, right, settings, threads, pool);
 }
 
 StereoMatchers& StereoMatchers::Get() {

@@ -10,7 +10,6 @@
 #include "engine/image/buffer.h"
 #include "engine/image/disparity_map.h"
 #include "engine/image/image.h"
-#include "engine/stereo/condition_pair.h"
 #include "engine/stereo/sgm_settings.h"
 
 namespace vs {
@@ -36,10 +35,11 @@ class StereoMatcher {
   virtual size_t WorkingBytes() const = 0;
 
  private:
-  // What Match does with a valid pair after ConditionPair.
-  virtual Result<DisparityMap> MatchConditioned(const PicturePair& pair,
-                                                const SgmSettings& settings, int threads,
-                                                BufferPool& pool) = 0;
+  // What Match does with a valid pair as it was given. A backend begins with ConditionPair, or
+  // with what equals it.
+  virtual Result<DisparityMap> MatchPair(const GreyImage& left, const GreyImage& right,
+                                         const SgmSettings& settings, int threads,
+                                         BufferPool& pool) = 0;
 };
 
 // NOT_FOUND or UNAVAILABLE when this machine cannot run the backend (no such device, no such

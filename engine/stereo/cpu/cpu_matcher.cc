@@ -18,6 +18,7 @@
 #include "engine/base/str.h"
 #include "engine/stereo/cell_memory.h"
 #include "engine/stereo/census.h"
+#include "engine/stereo/condition_pair.h"
 #include "engine/stereo/cpu/kernels.h"
 #include "engine/stereo/cpu/sweep.h"
 #include "engine/stereo/padded_picture.h"
@@ -99,8 +100,9 @@ class CpuMatcher final : public StereoMatcher {
   }
 
  private:
-  Result<DisparityMap> MatchConditioned(const PicturePair& pair, const SgmSettings& settings,
-                                        int threads, BufferPool& pool) override;
+  Result<DisparityMap> MatchPair(const GreyImage& raw_left, const GreyImage& raw_right,
+                                 const SgmSettings& settings, int threads,
+                                 BufferPool& pool) override;
   Status Prepare(const GreyImage& left, const GreyImage& right, const SgmSettings& settings,
                  int parts);
   void MakeFeatures(const SgmSettings& settings, int part, RowRange rows);
@@ -136,9 +138,10 @@ class CpuMatcher final : public StereoMatcher {
   Refiner refiner_;
 };
 
-Result<DisparityMap> CpuMatcher::MatchConditioned(const PicturePair& pair,
-                                                  const SgmSettings& settings, int threads,
-                                                  BufferPool& pool) {
+Result<DisparityMap> CpuMatcher::MatchPair(const GreyImage& raw_left, const GreyImage& raw_right,
+                                           const SgmSettings& settings, int threads,
+                                           BufferPool& pool) {
+  const PicturePair pair = ConditionPair(raw_left, raw_right, settings, pool);
   const GreyImage& left = pair.left;
   const int parts = std::clamp(threads, 1, 2 * (left.width() / kLeastColumns));
   VS_RETURN_IF_ERROR(Prepare(left, pair.right, settings, parts));
