@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <new>
+#include <utility>
 #include <vector>
 
 #include "engine/base/mutex.h"
@@ -15,13 +16,15 @@ constexpr size_t kPageBytes = 4096;
 struct Slab {
   std::byte* data;
   size_t size_bytes;
+  bool pinned;
 };
 
 }  // namespace
 
 struct BufferPool::State {
+  explicit State(std::shared_ptr<MemoryPinner> how) : pinner(std::move(how)) {}
   ~State() {
-    for (const Slab& slab : free) std::free(slab.data);
+    for (const Slab& slab : free) Free(slab);
   }
 
   Slab Take(size_t size_bytes) {
@@ -37,7 +40,7 @@ struct BufferPool::State {
     if (data == nullptr) throw std::bad_alloc();
     ++slabs_made;
     bytes_held += size_bytes;
-    return {data, size_bytes};
+    return {data, size_bytes, pinner != nullptr && pinner->Pin(data, size_bytes)};
   }
 
   void Give(Slab slab) {
@@ -48,10 +51,17 @@ struct BufferPool::State {
   void DropOldest() VS_REQUIRES(mutex) {
     while (free.size() > kMaxIdleSlabs) {
       bytes_held -= free.front().size_bytes;
-      std::free(free.front().data);
+      Free(free.front());
       free.erase(free.begin());
     }
   }
+
+  void Free(const Slab& slab) {
+    if (slab.pinned) pinner->Unpin(slab.data);
+    std::free(slab.data);
+  }
+
+  const std::shared_ptr<MemoryPinner> pinner;
 
   Mutex mutex;
   std::vector<Slab> free VS_GUARDED_BY(mutex);  // given back last at the end
@@ -60,7 +70,8 @@ struct BufferPool::State {
   Recycler<std::byte> control_blocks;
 };
 
-BufferPool::BufferPool() : state_(std::make_shared<State>()) {}
+BufferPool::BufferPool(std::shared_ptr<MemoryPinner> pinner)
+    : state_(std::make_shared<State>(std::move(pinner))) {}
 BufferPool::~BufferPool() = default;
 
 Buffer BufferPool::Acquire(size_t size_bytes) {
@@ -69,7 +80,7 @@ Buffer BufferPool::Acquire(size_t size_bytes) {
   std::shared_ptr<const void> owner(
       slab.data, [state = state_, slab](const void*) { state->Give(slab); },
       state_->control_blocks);
-  return {slab.data, size_bytes, Place::kHost, std::move(owner)};
+  return {slab.data, size_bytes, slab.pinned ? Place::kPinned : Place::kHost, std::move(owner)};
 }
 
 uint64_t BufferPool::SlabsMade() const {

@@ -23,6 +23,15 @@ struct Buffer {
   std::shared_ptr<const void> owner;
 };
 
+// Makes memory known to a device, which then copies from and to it directly. Thread-safe.
+class MemoryPinner {
+ public:
+  virtual ~MemoryPinner() = default;
+  // False if that cannot be done; the memory is then as good as any other.
+  virtual bool Pin(std::byte* data, size_t size_bytes) = 0;
+  virtual void Unpin(std::byte* data) = 0;
+};
+
 // Recycles page-aligned host memory. After the first frames every Acquire is served from memory
 // that an earlier frame gave back, without asking the heap. Thread-safe; buffers may outlive the
 // pool. The memory is not cleared.
@@ -32,7 +41,9 @@ struct Buffer {
 // more than any block uses for one frame, so in a warm sequence nothing is made or freed.
 class BufferPool {
  public:
-  BufferPool();
+  BufferPool() : BufferPool(nullptr) {}
+  // A pool of pinned memory, unless `pinner` is null.
+  explicit BufferPool(std::shared_ptr<MemoryPinner> pinner);
   ~BufferPool();
   BufferPool(const BufferPool&) = delete;
   BufferPool& operator=(const BufferPool&) = delete;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -22,6 +24,31 @@ TEST(BufferPool, GivesTheSameMemoryAgainOnceTheLastReaderLetGo) {
   const Buffer b = pool.Acquire(1000);
   EXPECT_TRUE(a.data == memory || b.data == memory);
   EXPECT_EQ(pool.SlabsMade(), 2u);
+}
+
+// Pins only memory of up to 8192 bytes.
+class FakePinner final : public MemoryPinner {
+ public:
+  bool Pin(std::byte* data, size_t size_bytes) override {
+    return size_bytes <= 8192 && pinned.insert(data).second;
+  }
+  void Unpin(std::byte* data) override { EXPECT_EQ(pinned.erase(data), 1U); }
+
+  std::set<std::byte*> pinned;
+};
+
+TEST(BufferPool, PinsItsMemoryAsLongAsItHasIt) {
+  const auto pinner = std::make_shared<FakePinner>();
+  {
+    BufferPool pool(pinner);
+    const Buffer small = pool.Acquire(5000);
+    EXPECT_EQ(small.place, Place::kPinned);
+    EXPECT_EQ(pinner->pinned, std::set<std::byte*>{small.data});
+    EXPECT_EQ(pool.Acquire(9000).place, Place::kHost) << "could not be pinned";
+    for (size_t k = 0; k < 3; ++k) EXPECT_EQ(pool.Acquire(100).place, Place::kPinned);
+    EXPECT_EQ(pinner->pinned.size(), 2U);
+  }
+  EXPECT_TRUE(pinner->pinned.empty());
 }
 
 constexpr size_t kPageBytes = 4096;
