@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 
 #include "engine/base/status.h"
+#include "engine/image/buffer.h"
 #include "engine/image/disparity_map.h"
 #include "engine/image/image.h"
 #include "engine/stereo/sgm_settings.h"
@@ -21,10 +23,14 @@ class Executor {
   // Makes room for frames of this size and with these valid settings; nothing happens if that was
   // done last. RESOURCE_EXHAUSTED says how many bytes are needed and how many there are.
   virtual Status Prepare(const SgmSettings& settings, int width, int height) = 0;
-  // One frame: up go two pictures of the prepared size, down comes `map`, which has room for it.
-  virtual Status Run(const GreyImage& left, const GreyImage& right, DisparityMap* map) = 0;
+  // One frame: up go two pictures of the prepared size, down comes their map, as StereoMatcher
+  // gives it. Its memory is the executor's own, pinned for the device, or comes from `pool`.
+  virtual Result<DisparityMap> Run(const GreyImage& left, const GreyImage& right,
+                                   BufferPool& pool) = 0;
   // Memory of the device that it holds.
   virtual size_t DeviceBytes() const = 0;
+  // What the stages of the last frame took on the device, without the copies; 0 if not measured.
+  virtual int64_t StagesNs() const = 0;
 };
 
 // Makes the executor of a device by its index. NOT_FOUND if there is no such device.

@@ -27,8 +27,9 @@ FrameMemory::FrameMemory(const SgmSettings& settings, int width, int height, std
   const size_t volume = pixels * f.pitch;
   Take(1, &f.counts);
   Take(1, &f.conditioning);
+  // Next to each other, so that one copy brings both up; so are the parts of a map.
+  for (int view : {kLeft, kRight}) Take(pixels, &f.input[view]);
   for (int view : {kLeft, kRight}) {
-    Take(pixels, &f.input[view]);
     Take(pixels, &f.across[view]);
     Take(pixels, &f.grey[view]);
     Take(pixels, &f.code[view]);

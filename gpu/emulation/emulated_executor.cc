@@ -6,6 +6,8 @@
 #include <memory>
 
 #include "engine/stereo/path_cost.h"
+#include "engine/stereo/refine.h"
+#include "engine/stereo/selection.h"
 #include "gpu/frame.h"
 #include "gpu/stages.h"
 
@@ -26,7 +28,8 @@ class EmulatedExecutor final : public Executor {
     return {};
   }
 
-  Status Run(const GreyImage& left, const GreyImage& right, DisparityMap* map) override {
+  Result<DisparityMap> Run(const GreyImage& left, const GreyImage& right,
+                           BufferPool& pool) override {
     std::memset(memory_.get(), kPoison, bytes_);
     std::memset(frame_.counts, 0, sizeof *frame_.counts);
     const Penalties penalties = MakePenalties(frame_.settings);
@@ -34,13 +37,16 @@ class EmulatedExecutor final : public Executor {
     Upload(left, const_cast<uint8_t*>(frame_.input[kLeft]));
     Upload(right, const_cast<uint8_t*>(frame_.input[kRight]));
     const DeviceMap result = RunStages(launch_, frame_);
-    Download(result.disparity, &map->disparity);
-    Download(result.confidence, &map->confidence);
-    Download(result.reason, &map->reason);
-    return {};
+    DisparityMap map = MakeDisparityMap(frame_.width, frame_.height,
+                                        DisparityOffset(frame_.settings), pool);
+    Download(result.disparity, &map.disparity);
+    Download(result.confidence, &map.confidence);
+    Download(result.reason, &map.reason);
+    return map;
   }
 
   size_t DeviceBytes() const override { return bytes_; }
+  int64_t StagesNs() const override { return 0; }
 
  private:
   struct Free {

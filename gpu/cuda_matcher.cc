@@ -1,0 +1,105 @@
+#include "gpu/cuda_matcher.h"
+
+#include <optional>
+#include <utility>
+
+#include "engine/base/log.h"
+#include "engine/base/str.h"
+
+namespace vs::gpu {
+namespace {
+
+class CudaMatcher final : public StereoMatcher {
+ public:
+  CudaMatcher(const CudaMatcherOptions& options, DeviceBoard::Seat seat)
+      : options_(options), seat_(std::move(seat)) {}
+
+  // Errors only if there is neither device nor substitute.
+  Status Start() {
+    const Status made = MakeExecutor();
+    if (made.ok() || made.code() == StatusCode::kResourceExhausted) return made;
+    return DoWithout(made);
+  }
+
+  // On the device; of the substitute's, while that works.
+  size_t WorkingBytes() const override {
+    if (executor_ != nullptr) return executor_->DeviceBytes();
+    return substitute_ != nullptr ? substitute_->WorkingBytes() : 0;
+  }
+
+ private:
+  Result<DisparityMap> MatchPair(const GreyImage& left, const GreyImage& right,
+                                 const SgmSettings& settings, int threads,
+                                 BufferPool& pool) override {
+    if (executor_ != nullptr || NowNs() - failed_ns_ >= kForgetNs) {
+      Result<DisparityMap> map = RunOnDevice(left, right, settings, pool);
+      if (map.has_value()) {
+        seat_.Works();
+        substitute_.reset();
+        return map;
+      }
+      const bool refused = map.error().code() == StatusCode::kResourceExhausted;
+      if (refused && executor_ != nullptr && substitute_ == nullptr) return map;
+      VS_RETURN_IF_ERROR(DoWithout(map.error()));
+    }
+    return substitute_->Match(left, right, settings, threads, pool);
+  }
+
+  Result<DisparityMap> RunOnDevice(const GreyImage& left, const GreyImage& right,
+                                   const SgmSettings& settings, BufferPool& pool) {
+    if (executor_ == nullptr) {
+      VS_RETURN_IF_ERROR(MakeExecutor());
+      return RunOnce(left, right, settings, pool);
+    }
+    Result<DisparityMap> map = RunOnce(left, right, settings, pool);
+    if (map.has_value() || map.error().code() == StatusCode::kResourceExhausted) return map;
+    const int64_t now_ns = NowNs();
+    const bool again = failed_ns_ != 0 && now_ns - failed_ns_ < kForgetNs;
+    failed_ns_ = now_ns;
+    if (again) return map;
+    LogWarn("gpu", Str("is started anew after: ", map.error().message()));
+    VS_RETURN_IF_ERROR(MakeExecutor());
+    return RunOnce(left, right, settings, pool);
+  }
+
+  Result<DisparityMap> RunOnce(const GreyImage& left, const GreyImage& right,
+                               const SgmSettings& settings, BufferPool& pool) {
+    VS_RETURN_IF_ERROR(executor_->Prepare(settings, left.width(), left.height()));
+    return executor_->Run(left, right, pool);
+  }
+
+  Status MakeExecutor() {
+    executor_.reset();  // its memory is needed
+    VS_ASSIGN_OR_RETURN(executor_, options_.make_executor(seat_.device()));
+    return {};
+  }
+
+  Status DoWithout(const Status& why) {
+    executor_.reset();
+    failed_ns_ = NowNs();
+    seat_.Fails(why);
+    if (substitute_ != nullptr) return {};
+    VS_ASSIGN_OR_RETURN(substitute_, options_.make_substitute());
+    return {};
+  }
+
+  int64_t NowNs() const { return options_.clock->MonotonicNs(); }
+
+  const CudaMatcherOptions options_;
+  DeviceBoard::Seat seat_;
+  std::unique_ptr<Executor> executor_;         // null while the device does not work
+  std::unique_ptr<StereoMatcher> substitute_;  // null while it does
+  int64_t failed_ns_ = 0;                      // when it did so last; 0: never
+};
+
+}  // namespace
+
+Result<std::unique_ptr<StereoMatcher>> MakeCudaMatcher(const CudaMatcherOptions& options,
+                                                       int device) {
+  VS_ASSIGN_OR_RETURN(DeviceBoard::Seat seat, options.board->Take(device));
+  auto matcher = std::make_unique<CudaMatcher>(options, std::move(seat));
+  VS_RETURN_IF_ERROR(matcher->Start());
+  return Result<std::unique_ptr<StereoMatcher>>(std::move(matcher));
+}
+
+}  // namespace vs::gpu

@@ -1,0 +1,69 @@
+#include "gpu/device_board.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/str.h"
+
+namespace vs::gpu {
+
+DeviceBoard::Seat::Seat(Seat&& other) noexcept
+    : board_(std::exchange(other.board_, nullptr)),
+      device_(other.device_),
+      failing_(other.failing_) {}
+
+DeviceBoard::Seat::~Seat() {
+  if (board_ == nullptr) return;
+  Works();
+  MutexLock lock(board_->mutex_);
+  --board_->entries_[static_cast<size_t>(device_)].seats;
+}
+
+void DeviceBoard::Seat::Fails(const Status& why) {
+  MutexLock lock(board_->mutex_);
+  Entry& entry = board_->entries_[static_cast<size_t>(device_)];
+  if (!failing_) ++entry.failing;
+  failing_ = true;
+  entry.why = why;
+}
+
+void DeviceBoard::Seat::Works() {
+  if (!failing_) return;
+  MutexLock lock(board_->mutex_);
+  --board_->entries_[static_cast<size_t>(device_)].failing;
+  failing_ = false;
+}
+
+Result<DeviceBoard::Seat> DeviceBoard::Take(int device) {
+  MutexLock lock(mutex_);
+  const auto count = static_cast<int>(entries_.size());
+  if (device >= count || (device == kAny && count == 0)) {
+    return NotFound(Str("there is no GPU ", std::max(device, 0), "; this machine has ", count,
+                        count > 0 ? Str(", from 0 to ", count - 1) : ""));
+  }
+  if (device == kAny) {
+    const auto best =
+        std::min_element(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
+          if ((a.failing > 0) != (b.failing > 0)) {
+            return b.failing > 0;
+          }
+          return a.seats < b.seats;
+        });
+    device = static_cast<int>(best - entries_.begin());
+  }
+  ++entries_[static_cast<size_t>(device)].seats;
+  return Seat(this, device);
+}
+
+std::vector<DeviceBoard::Fault> DeviceBoard::Faults() const {
+  std::vector<Fault> faults;
+  MutexLock lock(mutex_);
+  for (size_t k = 0; k < entries_.size(); ++k) {
+    const Entry& entry = entries_[k];
+    if (entry.failing == 0) continue;
+    faults.push_back({.device = static_cast<int>(k), .matchers = entry.failing, .why = entry.why});
+  }
+  return faults;
+}
+
+}  // namespace vs::gpu
