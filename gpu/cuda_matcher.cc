@@ -14,10 +14,12 @@ class CudaMatcher final : public StereoMatcher {
   CudaMatcher(const CudaMatcherOptions& options, DeviceBoard::Seat seat)
       : options_(options), seat_(std::move(seat)) {}
 
-  // Errors only if there is neither device nor substitute.
   Status Start() {
     const Status made = MakeExecutor();
-    if (made.ok() || made.code() == StatusCode::kResourceExhausted) return made;
+    if (made.ok() || made.code() == StatusCode::kResourceExhausted ||
+        made.code() == StatusCode::kFailedPrecondition) {
+      return made;
+    }
     return DoWithout(made);
   }
 

@@ -22,8 +22,8 @@ struct CudaMatcherOptions {
 //   - Any other error: the executor is made anew, once in kForgetNs, and gets the frame again.
 //   - If that does not help, a substitute takes the frame and all that follow, and the board is
 //     told. After each kForgetNs one frame tries the device again.
-// Errors: NOT_FOUND as DeviceBoard::Take; RESOURCE_EXHAUSTED as `make_executor`; what
-// `make_substitute` says if that is needed.
+// Errors: NOT_FOUND as DeviceBoard::Take; RESOURCE_EXHAUSTED and FAILED_PRECONDITION as
+// `make_executor`; what `make_substitute` says if that is needed.
 inline constexpr int64_t kForgetNs = int64_t{60} * 1'000'000'000;
 Result<std::unique_ptr<StereoMatcher>> MakeCudaMatcher(const CudaMatcherOptions& options,
                                                        int device);

@@ -27,8 +27,9 @@ FrameMemory::FrameMemory(const SgmSettings& settings, int width, int height, std
   const size_t volume = pixels * f.pitch;
   Take(1, &f.counts);
   Take(1, &f.conditioning);
-  // Next to each other, so that one copy brings both up; so are the parts of a map.
+  // What comes from the host lies together, so that one copy brings it; so does a map.
   for (int view : {kLeft, kRight}) Take(pixels, &f.input[view]);
+  Take(256, &f.p2);
   for (int view : {kLeft, kRight}) {
     Take(pixels, &f.across[view]);
     Take(pixels, &f.grey[view]);
@@ -36,7 +37,6 @@ FrameMemory::FrameMemory(const SgmSettings& settings, int width, int height, std
     Take(pixels, &f.code_high[view]);
     Take(pixels, &f.coarse[view]);
   }
-  Take(256, &f.p2);
   for (uint8_t** plane : {&f.winner_index, &f.winner_best, &f.winner_second, &f.winner_before,
                           &f.winner_after, &f.right_index}) {
     Take(pixels, plane);

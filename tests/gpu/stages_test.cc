@@ -6,8 +6,6 @@
 #include <memory>
 #include <random>
 
-#include "engine/stereo/refine.h"
-#include "engine/stereo/selection.h"
 #include "engine/stereo/stereo_matcher.h"
 #include "gpu/emulation/emulated_executor.h"
 #include "tests/engine/stereo/map_difference.h"
@@ -25,9 +23,9 @@ class Stages : public testing::Test {
     const auto expected = reference_->Match(pair.left, pair.right, settings, 2, pool_);
     ASSERT_TRUE(expected.has_value()) << expected.error().ToString();
     ASSERT_TRUE(executor_->Prepare(settings, width, height).ok());
-    DisparityMap map = MakeDisparityMap(width, height, DisparityOffset(settings), pool_);
-    ASSERT_TRUE(executor_->Run(pair.left, pair.right, &map).ok());
-    ASSERT_EQ(MapDifference(map, *expected), "")
+    const auto map = executor_->Run(pair.left, pair.right, pool_);
+    ASSERT_TRUE(map.has_value()) << map.error().ToString();
+    ASSERT_EQ(MapDifference(*map, *expected), "")
         << width << " x " << height << " px, " << Describe(settings);
   }
 

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+
+#include "engine/base/status.h"
+#include "gpu/executor.h"
+
+namespace vs::gpu {
+
+struct CudaExecutorOptions {
+  // For tests: before each frame all memory is filled with what no stage may rely on.
+  bool poison = false;
+};
+
+// Errors: those of Devices(); NOT_FOUND if there is no device of this index; FAILED_PRECONDITION if
+// the program has no code for it; RESOURCE_EXHAUSTED when its memory is taken; UNAVAILABLE when it
+// does not work. A device that an error has left in no state to go on is reset first; the executors
+// that it had are then of no more use, the maps that they made stay.
+Result<std::unique_ptr<Executor>> MakeCudaExecutor(int device, const CudaExecutorOptions& options);
+
+}  // namespace vs::gpu
