@@ -40,6 +40,11 @@ bool SpoilsContext(cudaError_t error) {
 
 std::string VersionText(int version) { return Str(version / 1000, '.', version % 1000 / 10); }
 
+double AttributeOf(int device, cudaDeviceAttr attribute) {
+  int value = 0;
+  return cudaDeviceGetAttribute(&value, attribute, device) == cudaSuccess ? value : 0;
+}
+
 Result<std::vector<DeviceInfo>> FindDevices() {
   int driver = 0;
   if (cudaDriverGetVersion(&driver) != cudaSuccess || driver == 0) {
@@ -68,7 +73,12 @@ Result<std::vector<DeviceInfo>> FindDevices() {
     devices.push_back({.name = properties.name,
                        .memory_bytes = properties.totalGlobalMem,
                        .compute = Str(properties.major, '.', properties.minor),
-                       .driver = VersionText(driver)});
+                       .driver = VersionText(driver),
+                       .multiprocessors = properties.multiProcessorCount,
+                       .clock_hz = 1e3 * AttributeOf(k, cudaDevAttrClockRate),
+                       // Two bits for each line and clock.
+                       .memory_bytes_per_s = 2e3 / 8 * AttributeOf(k, cudaDevAttrMemoryClockRate) *
+                                             AttributeOf(k, cudaDevAttrGlobalMemoryBusWidth)});
   }
   return devices;
 }

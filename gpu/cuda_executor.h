@@ -7,9 +7,13 @@
 
 namespace vs::gpu {
 
+// For tests.
 struct CudaExecutorOptions {
-  // For tests: before each frame all memory is filled with what no stage may rely on.
+  // Before each frame all memory is filled with what no stage may rely on.
   bool poison = false;
+  // In this frame, counted from 1, a kernel writes where it must not, which spoils the context of
+  // all executors on the device; 0: in none.
+  int spoil_frame = 0;
 };
 
 // Errors: those of Devices(); NOT_FOUND if there is no device of this index; FAILED_PRECONDITION if

@@ -16,6 +16,10 @@ struct DeviceInfo {
   uint64_t memory_bytes = 0;  // in all
   std::string compute;        // compute capability, "9.0"
   std::string driver;         // the newest CUDA that its driver knows, "13.0"
+  // Its limits, for comparison; 0 if not known.
+  int multiprocessors = 0;
+  double clock_hz = 0;
+  double memory_bytes_per_s = 0;
 };
 
 // By index, at least one. UNAVAILABLE says why there is none: built without CUDA, no driver, no

@@ -1,4 +1,5 @@
-// What devices.h says where there is no CUDA.
+// What devices.h and cuda_executor.h say where there is no CUDA.
+#include "gpu/cuda_executor.h"
 #include "gpu/devices.h"
 
 namespace vs::gpu {
@@ -7,6 +8,11 @@ const Result<std::vector<DeviceInfo>>& Devices() {
   static const Result<std::vector<DeviceInfo>> none =
       Unavailable("this program is built without CUDA");
   return none;
+}
+
+Result<std::unique_ptr<Executor>> MakeCudaExecutor(int /*device*/,
+                                                   const CudaExecutorOptions& /*options*/) {
+  return Devices().error();
 }
 
 DeviceBoard& Board() {

@@ -62,7 +62,7 @@ LIBRARIES = {
         "tests/*",
     },
     r"sodium\.h": {"server/access/*"},
-    r"boost": {"server/http/request_reader.cc"},
+    r"boost": {"gpu/emulation/simt_on_cpu.cc", "server/http/request_reader.cc"},
     r"openssl": {
         "client/certificate.cc",
         "server/http/client_stream.cc",
@@ -70,6 +70,7 @@ LIBRARIES = {
         "server/transport/certificate.cc",
         "tests/server/http/*",
     },
+    r"cuda_runtime(_api)?\.h": {"gpu/cuda_device.h", "gpu/*.cu", "gpu/kernels/simt_on_cuda.h"},
     r"turbojpeg\.h": {"server/streams/jpeg_encoder.cc", "tests/*"},
     r"png\.h": {"client/cli/png_file.cc", "engine/image/png.cc", "tests/*"},
 }

@@ -91,4 +91,17 @@ Status SetSgmField(std::string_view assignment, SgmSettings* settings) {
   return Status();
 }
 
+SgmSettings PlainCensus(int directions) {
+  return {.cost = MatchCost::kCensus,
+          .census = CensusPattern::k5x5,
+          .smooth_cost = false,
+          .directions = directions,
+          .p1 = 5,
+          .p2 = 30,
+          .median = 0,
+          .speckle_size = 0,
+          .gated_median = false,
+          .fill_holes = false};
+}
+
 }  // namespace vs::test

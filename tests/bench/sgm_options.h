@@ -12,4 +12,8 @@ namespace vs::test {
 // wrong.
 Status SetSgmField(std::string_view assignment, SgmSettings* settings);
 
+// Census 5x5 along this many directions and the left-right check, without filters: what others
+// publish figures of.
+SgmSettings PlainCensus(int directions);
+
 }  // namespace vs::test

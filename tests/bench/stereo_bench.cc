@@ -31,6 +31,7 @@
 #include "proto/wire/rvl.h"
 #include "proto/wire/zstd.h"
 #include "tests/bench/opencv_peers.h"
+#include "tests/bench/sgm_options.h"
 
 namespace vs::test {
 namespace {
@@ -100,19 +101,6 @@ void TakeTurns(const std::string& name, std::vector<Runner> runners, const Optio
     }
   }
   PrintCase(name, runners, options.json);
-}
-
-SgmSettings PlainCensus(int directions) {
-  return {.cost = MatchCost::kCensus,
-          .census = CensusPattern::k5x5,
-          .smooth_cost = false,
-          .directions = directions,
-          .p1 = 5,
-          .p2 = 30,
-          .median = 0,
-          .speckle_size = 0,
-          .gated_median = false,
-          .fill_holes = false};
 }
 
 class Bench {
