@@ -11,6 +11,7 @@
 #include "engine/base/check.h"
 #include "engine/base/log.h"
 #include "engine/base/str.h"
+#include "gpu/devices.h"
 #include "server/access/policy.h"
 #include "server/version.h"
 
@@ -89,13 +90,14 @@ HttpServerOptions ToHttpOptions(const config::ServerConfig& config, ListenAddres
 
 Result<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
   VS_ASSIGN_OR_RETURN(DataFolder folder, DataFolder::Take(options.config.data_dir()));
+  gpu::RegisterMatchers();
   std::unique_ptr<Server> server(new Server(options, std::move(folder)));
   VS_RETURN_IF_ERROR(server->OpenStores());
   server->RegisterServices();
   VS_RETURN_IF_ERROR(server->StartNetwork());
   server->vision_->StartSequences();
-  server->vision_watch_ = std::make_unique<VisionWatch>(*server->vision_, server->health_,
-                                                        server->alarms_, server->system_clock_);
+  server->vision_watch_ = std::make_unique<VisionWatch>(
+      *server->vision_, gpu::Board(), server->health_, server->alarms_, server->system_clock_);
   server->housekeeper_ = std::jthread([raw = server.get()] { raw->KeepHouse(); });
   return server;
 }

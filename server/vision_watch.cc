@@ -17,9 +17,9 @@ using Severity = AlarmBoard::Severity;
 
 }  // namespace
 
-VisionWatch::VisionWatch(Vision& vision, HealthBoard& health, AlarmBoard& alarms,
-                         const Clock& clock)
-    : vision_(vision), health_(health), alarms_(alarms), clock_(clock) {
+VisionWatch::VisionWatch(Vision& vision, const gpu::DeviceBoard& gpus, HealthBoard& health,
+                         AlarmBoard& alarms, const Clock& clock)
+    : vision_(vision), gpus_(gpus), health_(health), alarms_(alarms), clock_(clock) {
   thread_ = std::jthread([this] { Run(); });
 }
 
@@ -47,6 +47,7 @@ void VisionWatch::Look() {
   }
   LookAtSequences();
   LookAtCameras();
+  LookAtGpus();
   ClearOld();
 }
 
@@ -92,6 +93,16 @@ void VisionWatch::LookAtCameras() {
     const std::string trouble = TroubleOf(camera.stats);
     if (trouble.empty() || camera.used_by.empty()) continue;
     Report("cameras/" + camera.id, Severity::kError, Str("camera ", camera.id, ": ", trouble));
+  }
+}
+
+void VisionWatch::LookAtGpus() {
+  for (const gpu::DeviceBoard::Fault& fault : gpus_.Faults()) {
+    Report(Str("gpu/", fault.device), Severity::kWarning,
+           Str("GPU ", fault.device, " does not work, so ", fault.matchers,
+               " matcher(s) work on the processor, more slowly, and try it again each minute: ",
+               fault.why.message(),
+               "; if this stays, look at the driver's messages (dmesg) and start the server anew"));
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "engine/base/clock.h"
 #include "engine/base/mutex.h"
+#include "gpu/device_board.h"
 #include "server/services/alarm_board.h"
 #include "server/services/health_board.h"
 #include "server/vision.h"
@@ -16,13 +17,15 @@ namespace vs {
 
 // Looks after the vision half of a server twice a second: tells the health of each sequence
 // ("sequences/ID"), and raises an alarm when results cannot be written ("results"), a sequence
-// fails ("sequences/ID") or is over its latency budget for more than a second ("latency/ID"), or a
-// camera in use gives no pictures ("cameras/ID"). An alarm stays for
-// some seconds after its reason has gone, so that what comes and goes is seen and fills no log.
+// fails ("sequences/ID") or is over its latency budget for more than a second ("latency/ID"), a
+// camera in use gives no pictures ("cameras/ID"), or a GPU in use does not work ("gpu/INDEX"). An
+// alarm stays for some seconds after its reason has gone, so that what comes and goes is seen and
+// fills no log.
 class VisionWatch {
  public:
   // All must outlive it.
-  VisionWatch(Vision& vision, HealthBoard& health, AlarmBoard& alarms, const Clock& clock);
+  VisionWatch(Vision& vision, const gpu::DeviceBoard& gpus, HealthBoard& health, AlarmBoard& alarms,
+              const Clock& clock);
   ~VisionWatch();
   VisionWatch(const VisionWatch&) = delete;
   VisionWatch& operator=(const VisionWatch&) = delete;
@@ -33,10 +36,12 @@ class VisionWatch {
   void LookAtSequences();
   void LookAtLatency(const SequenceStatus& status);
   void LookAtCameras();
+  void LookAtGpus();
   void Report(const std::string& id, AlarmBoard::Severity severity, const std::string& message);
   void ClearOld();
 
   Vision& vision_;
+  const gpu::DeviceBoard& gpus_;
   HealthBoard& health_;
   AlarmBoard& alarms_;
   const Clock& clock_;

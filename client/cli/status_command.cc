@@ -21,6 +21,13 @@ void Print(const v1::GetServerInfoResponse& info, const v1::GetStatisticsRespons
             " cores; memory: " + Mebibytes(resources.memory_server_bytes()) +
             ", free on the machine " + Mebibytes(resources.memory_available_bytes()) +
             "; free on the disk " + Mebibytes(resources.disk_free_bytes()));
+  for (int k = 0; k < resources.gpus_size(); ++k) {
+    const v1::Gpu& gpu = resources.gpus(k);
+    PrintLine("GPU " + std::to_string(k) + ": " + gpu.name() + ", " +
+              Mebibytes(gpu.memory_bytes()) + ", compute capability " + gpu.compute_capability() +
+              ", driver for CUDA " + gpu.driver_cuda_version());
+  }
+  if (!resources.no_gpu_reason().empty()) PrintLine("no GPU: " + resources.no_gpu_reason());
   for (const v1::Alarm& alarm : alarms.alarms()) {
     PrintLine(std::string(alarm.severity() == v1::ALARM_SEVERITY_ERROR ? "ERROR" : "WARNING") +
               " since " + TimeText(alarm.since()) + ": " + alarm.message());

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "server/convert/time.h"
+#include "server/services/gpus.h"
 #include "server/services/resources.h"
 
 namespace vs {
@@ -89,6 +90,7 @@ Result<pb::GetResourcesResponse> SystemService::GetResources(
   response.set_disk_free_bytes(resources.disk_free_bytes);
   response.set_open_files(resources.open_files);
   response.set_open_files_limit(resources.open_files_limit);
+  AddGpus(gpu::Devices(), &response);
   return response;
 }
 

@@ -8,10 +8,13 @@
 #include "visionserver/v1/system.grpc.pb.h"
 #include <google/protobuf/descriptor.pb.h>
 
+#include "server/services/gpus.h"
+#include "server/vision_watch.h"
 #include "tests/support/client_call.h"
 #include "tests/support/fake_clock.h"
 #include "tests/support/raw_call.h"
 #include "tests/support/test_server.h"
+#include "tests/support/wait_until.h"
 
 namespace vs {
 namespace {
@@ -94,6 +97,56 @@ TEST_F(SystemServiceTest, KnowsTheMachine) {
   EXPECT_GE(resources.disk_total_bytes(), resources.disk_free_bytes());
   EXPECT_GT(resources.open_files(), 5U);
   EXPECT_GE(resources.open_files_limit(), resources.open_files());
+}
+
+TEST_F(SystemServiceTest, ListsGpusOrSaysWhyThereIsNone) {
+  pb::GetResourcesResponse resources;
+  ASSERT_TRUE(
+      system_->GetResources(ClientCall(server_.Token(Role::kViewer)).context(), {}, &resources)
+          .ok());
+  EXPECT_NE(resources.gpus().empty(), resources.no_gpu_reason().empty());
+}
+
+TEST(Gpus, AreToldWithTheirFigures) {
+  pb::GetResourcesResponse resources;
+  AddGpus(std::vector<gpu::DeviceInfo>{{.name = "NVIDIA H200",
+                                        .memory_bytes = uint64_t{141} << 30,
+                                        .compute = "9.0",
+                                        .driver = "13.0"},
+                                       {.name = "NVIDIA T4"}},
+          &resources);
+  ASSERT_EQ(resources.gpus_size(), 2);
+  EXPECT_EQ(resources.gpus(0).name(), "NVIDIA H200");
+  EXPECT_EQ(resources.gpus(0).memory_bytes(), uint64_t{141} << 30);
+  EXPECT_EQ(resources.gpus(0).compute_capability(), "9.0");
+  EXPECT_EQ(resources.gpus(0).driver_cuda_version(), "13.0");
+  EXPECT_EQ(resources.no_gpu_reason(), "");
+
+  resources.Clear();
+  AddGpus(Unavailable("no driver"), &resources);
+  EXPECT_TRUE(resources.gpus().empty());
+  EXPECT_EQ(resources.no_gpu_reason(), "no driver");
+}
+
+TEST(Gpus, ThatFailRaiseAnAlarmUntilTheyWorkAgain) {
+  TestServer server;
+  gpu::DeviceBoard board(2);
+  auto seat = *board.Take(1);
+  seat.Fails(Unavailable("GPU 1: cudaGraphLaunch: cudaErrorIllegalAddress"));
+  test::FakeClock clock;
+  AlarmBoard alarms(clock);
+  HealthBoard health;
+  VisionWatch watch(server->vision(), board, health, alarms, clock);
+  ASSERT_TRUE(test::WaitUntil([&] { return !alarms.List().empty(); }));
+  EXPECT_EQ(alarms.List()[0].id, "gpu/1");
+  EXPECT_EQ(alarms.List()[0].severity, AlarmBoard::Severity::kWarning);
+  EXPECT_THAT(alarms.List()[0].message, HasSubstr("GPU 1 does not work"));
+  EXPECT_THAT(alarms.List()[0].message, HasSubstr("cudaErrorIllegalAddress"));
+  seat.Works();
+  ASSERT_TRUE(test::WaitUntil([&] {
+    clock.Advance(std::chrono::seconds(5));
+    return alarms.List().empty();
+  }));
 }
 
 TEST_F(SystemServiceTest, ListsAlarmsGravestFirst) {
