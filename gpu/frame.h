@@ -77,7 +77,7 @@ struct Frame {
   uint32_t* label = nullptr;   // speckle filter: by pixel
   uint32_t* region = nullptr;  // pixels of the region, by its label
 
-  int Pixels() const { return width * height; }
+  constexpr int Pixels() const { return width * height; }
 };
 
 // The device memory of frames of one size and one kind of settings.
