@@ -15,6 +15,7 @@
 #define VS_HOST_DEVICE inline
 // One block runs at a time.
 #define VS_SHARED static thread_local
+#define VS_UNROLL _Pragma("GCC unroll 32")
 
 namespace vs::gpu {
 

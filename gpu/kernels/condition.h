@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "gpu/frame.h"
+#include "gpu/kernels/scan.h"
 #include "gpu/kernels/simt.h"
 
 namespace vs::gpu {
@@ -72,22 +73,6 @@ VS_KERNEL CountGreys(const Frame frame, const CommonColumns columns) {
   }
 }
 
-// Adds to each of the block's values those of all threads before. `room` has one for each thread.
-VS_DEVICE uint32_t SumUpTo(uint32_t value, uint32_t* room) {
-  const int self = ThreadInBlock();
-  room[self] = value;
-  for (int reach = 1; reach < ThreadsInBlock(); reach *= 2) {
-    SyncBlock();
-    const uint32_t before = self >= reach ? room[self - reach] : 0;
-    SyncBlock();
-    room[self] += before;
-  }
-  SyncBlock();
-  const uint32_t sum = room[self];
-  SyncBlock();
-  return sum;
-}
-
 // NoiseSixteenths of condition_pair.h, from the counts; all threads of the block get it.
 VS_DEVICE int NoiseOf(const uint32_t* counts, uint32_t* room) {
   VS_SHARED int noise;
@@ -96,10 +81,8 @@ VS_DEVICE int NoiseOf(const uint32_t* counts, uint32_t* room) {
   uint32_t own = 0;
   for (int k = 0; k < kEach; ++k) own += counts[first + k];
   if (ThreadInBlock() == 0) noise = 0;
-  const uint32_t up_to_here = SumUpTo(own, room);
-  if (ThreadInBlock() == ThreadsInBlock() - 1) room[0] = up_to_here;
-  SyncBlock();
-  const uint32_t blocks = room[0];
+  const uint32_t up_to_here = JoinUpToHere(own, Plus(), room);
+  const uint32_t blocks = room[ThreadsInBlock() - 1];
   // The one bin at which 5 % are reached.
   uint32_t below = up_to_here - own;
   for (int k = 0; k < kEach && blocks > 0; ++k) {
@@ -121,7 +104,7 @@ VS_DEVICE void FindQuantiles(const uint32_t* counts, int64_t pixels, uint32_t* r
                              int* quantiles) {
   const int grey = ThreadInBlock();
   const int64_t count = counts[grey];
-  const auto with = static_cast<int64_t>(SumUpTo(counts[grey], room));
+  const auto with = static_cast<int64_t>(JoinUpToHere(counts[grey], Plus(), room));
   const int64_t below = with - count;
   for (int k = 0; k < kQuantiles; ++k) {
     const int64_t wanted = pixels * (k + 1) / (kQuantiles + 1);

@@ -10,6 +10,7 @@
 #define VS_DEVICE __device__ __forceinline__
 #define VS_HOST_DEVICE __host__ __device__ __forceinline__
 #define VS_SHARED __shared__
+#define VS_UNROLL _Pragma("unroll")
 
 namespace vs::gpu {
 
