@@ -75,12 +75,12 @@ export async function logIn(page, server, user = 'admin', place = '/') {
 }
 
 /** Where a login begins. */
-export const userField = (page) => page.getByRole('textbox', { name: 'User' });
+export const userField = (page) => page.getByRole('textbox', { name: /^(User|Benutzer)/ });
 
 export async function fillLogin(page, user, password) {
   await userField(page).fill(user);
-  await page.getByLabel(/^Password/).fill(password);
-  await page.getByRole('button', { name: 'Log in', exact: true }).click();
+  await page.getByRole('textbox', { name: /^(Password|Passwort)/ }).fill(password);
+  await page.getByRole('button', { name: /^(Log in|Anmelden)$/ }).click();
 }
 
 /** Nothing went wrong in the page: no exception, no refused resource, no error in the console. */
@@ -88,10 +88,25 @@ export function assertNoFaults(page) {
   assert.deepEqual(page.faults, []);
 }
 
-/** Stores what the page looks like, where VS_PICTURES names a folder. */
-export async function picture(page, name) {
+/**
+ * Stores what the page looks like, where VS_PICTURES names a folder. A page with pictures of cameras
+ * is much smaller as `jpeg`.
+ */
+export async function picture(page, name, type = 'png') {
   const folder = process.env.VS_PICTURES;
-  if (folder) await page.screenshot({ path: join(folder, `${name}.png`) });
+  if (!folder) return;
+  if (type === 'jpeg') await page.waitForTimeout(4000); // rate and delay are means over seconds
+  const [extension, quality] = type === 'jpeg' ? ['jpg', 80] : ['png', undefined];
+  await page.screenshot({ path: join(folder, `${name}.${extension}`), type, quality });
+}
+
+/** Waits until dialogs and menus have faded in: what is half transparent has too little contrast. */
+export async function settled(page) {
+  await page.evaluate(() =>
+    Promise.allSettled(
+      document.getAnimations().map((animation) => animation instanceof CSSTransition && animation.finished),
+    ),
+  );
 }
 
 const axe = readFileSync(libraryFile('axe-core/axe.min.js'), 'utf8');
