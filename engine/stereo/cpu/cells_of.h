@@ -40,16 +40,20 @@ struct Cell {
   V v[kStripes];
 
   VS_INLINE void Load(const uint8_t* p) {
+#pragma GCC unroll 16
     for (int r = 0; r < kStripes; ++r) v[r] = Simd::Load(p + r * kLanes);
   }
   VS_INLINE void Store(uint8_t* p) const {
+#pragma GCC unroll 16
     for (int r = 0; r < kStripes; ++r) Simd::Store(p + r * kLanes, v[r]);
   }
   VS_INLINE void Fill(uint8_t value) {
+#pragma GCC unroll 16
     for (int r = 0; r < kStripes; ++r) v[r] = Simd::Set(value);
   }
 };
 
+// For any bytes.
 VS_INLINE V AbsoluteDifference(V a, V b) {
   return Simd::Subtract(Simd::Max(a, b), Simd::Min(a, b));
 }

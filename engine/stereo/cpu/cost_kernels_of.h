@@ -158,7 +158,8 @@ VS_INLINE V PixelCost(const Plan& plan, const uint8_t* left,
     if constexpr (kBytes > 3) cost = Simd::Average(cost, Simd::Set(0));
     if constexpr (HasAd(kKind)) {
       const V grey = right.Feature(kBytes, stripe);
-      const V step = AbsoluteDifference(Simd::Set(left[kBytes * left_plane]), grey);
+      // Coarse grey is at most 64, so that the difference has a sign.
+      const V step = Simd::Magnitude(Simd::Subtract(Simd::Set(left[kBytes * left_plane]), grey));
       cost = Simd::Add(cost, Simd::Min(step, limit));
     }
     return cost;

@@ -34,6 +34,7 @@ struct Simd {
   static V AddSaturated(V a, V b) { return {_mm256_adds_epu8(a.v, b.v)}; }
   static V Subtract(V a, V b) { return {_mm256_sub_epi8(a.v, b.v)}; }
   static V SubtractSaturated(V a, V b) { return {_mm256_subs_epu8(a.v, b.v)}; }
+  static V Magnitude(V a) { return {_mm256_abs_epi8(a.v)}; }
   static V Average(V a, V b) { return {_mm256_avg_epu8(a.v, b.v)}; }
   static V Xor(V a, V b) { return {_mm256_xor_si256(a.v, b.v)}; }
   static V Or(V a, V b) { return {_mm256_or_si256(a.v, b.v)}; }
@@ -73,11 +74,8 @@ struct Simd {
     return {_mm256_alignr_epi8(_mm256_permute2x128_si256(a.v, Set(guard).v, 0x21), a.v, 1)};
   }
 
-  static V LeastOfAll(V a) {
-    const __m128i half =
-        _mm_min_epu8(_mm256_castsi256_si128(a.v), _mm256_extracti128_si256(a.v, 1));
-    return {_mm256_broadcastb_epi8(_mm_minpos_epu16(_mm_min_epu8(half, _mm_srli_epi16(half, 8))))};
-  }
+  static V LeastOfAll(V a) { return {_mm256_broadcastb_epi8(Least(a))}; }
+  static uint8_t LeastByte(V a) { return static_cast<uint8_t>(_mm_cvtsi128_si32(Least(a))); }
   // Pairs: sixteen bits each, the first argument above the second.
   static V PairLow(V high, V low) { return {_mm256_unpacklo_epi8(low.v, high.v)}; }
   static V PairHigh(V high, V low) { return {_mm256_unpackhi_epi8(low.v, high.v)}; }
@@ -91,6 +89,13 @@ struct Simd {
     return static_cast<uint8_t>(_mm_cvtsi128_si32(_mm256_castsi256_si128(a.v)));
   }
   static uint8_t Last(V a) { return static_cast<uint8_t>(_mm256_extract_epi8(a.v, 31)); }
+
+ private:
+  static __m128i Least(V a) {
+    const __m128i half =
+        _mm_min_epu8(_mm256_castsi256_si128(a.v), _mm256_extracti128_si256(a.v, 1));
+    return _mm_minpos_epu16(_mm_min_epu8(half, _mm_srli_epi16(half, 8)));
+  }
 };
 
 }  // namespace

@@ -28,6 +28,7 @@ struct Simd {
   static V AddSaturated(V a, V b) { return {_mm512_adds_epu8(a.v, b.v)}; }
   static V Subtract(V a, V b) { return {_mm512_sub_epi8(a.v, b.v)}; }
   static V SubtractSaturated(V a, V b) { return {_mm512_subs_epu8(a.v, b.v)}; }
+  static V Magnitude(V a) { return {_mm512_abs_epi8(a.v)}; }
   static V Average(V a, V b) { return {_mm512_avg_epu8(a.v, b.v)}; }
   static V Xor(V a, V b) { return {_mm512_xor_si512(a.v, b.v)}; }
   static V Or(V a, V b) { return {_mm512_or_si512(a.v, b.v)}; }
@@ -57,6 +58,7 @@ struct Simd {
   }
 
   static V LeastOfAll(V a) { return {_mm512_broadcastb_epi8(Least(a))}; }
+  static uint8_t LeastByte(V a) { return static_cast<uint8_t>(_mm_cvtsi128_si32(Least(a))); }
   // Pairs: sixteen bits each, the first argument above the second.
   static V PairLow(V high, V low) { return {_mm512_unpacklo_epi8(low.v, high.v)}; }
   static V PairHigh(V high, V low) { return {_mm512_unpackhi_epi8(low.v, high.v)}; }

@@ -37,6 +37,8 @@ struct Simd {
   }
   static V Subtract(V a, V b) { return a - b; }
   static V SubtractSaturated(V a, V b) { return Max(a, b) - b; }
+  // Of bytes with a sign.
+  static V Magnitude(V a) { return Min(a, V{} - a); }
   static V Average(V a, V b) { return (a | b) - (((a ^ b) >> 1) & Set(0x7f)); }
   static V Xor(V a, V b) { return a ^ b; }
   static V Or(V a, V b) { return a | b; }
@@ -71,7 +73,7 @@ struct Simd {
                                    16);
   }
 
-  // The least lane, in all lanes.
+  // The least lane, in all lanes, or by itself.
   static V LeastOfAll(V a) {
     a = Min(a, __builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7));
     a = Min(a, __builtin_shufflevector(a, a, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11));
@@ -79,6 +81,7 @@ struct Simd {
     return Min(a,
                __builtin_shufflevector(a, a, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14));
   }
+  static uint8_t LeastByte(V a) { return LeastOfAll(a)[0]; }
   // Half of the lanes of two vectors as pairs of bytes, each a number of sixteen bits with the
   // first argument above the second (on a little-endian machine).
   static V PairLow(V high, V low) {

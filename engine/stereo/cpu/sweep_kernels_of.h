@@ -104,7 +104,7 @@ VS_INLINE void SelectLeft(const SweepRow& work, const Layout<kStripes>& layout, 
   static constexpr Places<kStripes> kPlaces;
   work.winners.index[x] = static_cast<uint8_t>(index);
   work.winners.best[x] = static_cast<uint8_t>(pair >> 8);
-  work.winners.second[x] = Simd::First(Simd::LeastOfAll(second));
+  work.winners.second[x] = Simd::LeastByte(second);
   work.winners.before[x] = sums[kPlaces.of[index]];
   work.winners.after[x] = sums[kPlaces.of[index + 2]];
 }
@@ -131,6 +131,7 @@ class RightWinners {
 
   VS_INLINE void Offer(const Layout<kStripes>& layout, int x, const Cell<kStripes>& sum) {
     if (state_ == nullptr) return;
+#pragma GCC unroll 16
     for (int r = 0; r < kStripes; ++r) {
       const V better = backward_
                            ? Simd::IfLess(least_.v[r], sum.v[r], index_.v[r], layout.index.v[r])
@@ -145,6 +146,7 @@ class RightWinners {
       Put(right, Simd::First(index_.v[0]));
       const V least = Simd::FromAbove(least_.v[0], 254);
       const V index = Simd::FromAbove(index_.v[0], 0);
+#pragma GCC unroll 16
       for (int r = 0; r < kLast; ++r) {
         least_.v[r] = least_.v[r + 1];
         index_.v[r] = index_.v[r + 1];
@@ -155,6 +157,7 @@ class RightWinners {
       Put(right - (kStripes * kLanes - 1), Simd::Last(index_.v[kLast]));
       const V least = Simd::FromBelow(least_.v[kLast], 255);
       const V index = Simd::FromBelow(index_.v[kLast], 0);
+#pragma GCC unroll 16
       for (int r = kLast; r > 0; --r) {
         least_.v[r] = least_.v[r - 1];
         index_.v[r] = index_.v[r - 1];
