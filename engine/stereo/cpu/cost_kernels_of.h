@@ -74,6 +74,9 @@ constexpr int PlanesOf(CostKind kind) {
   return CensusBytesOf(kind) + (HasAd(kind) ? 1 : 0);
 }
 
+// An array needs a place.
+constexpr int PlanesIf(bool held, int planes) { return held ? planes : 1; }
+
 // The features of a left pixel's counterparts. One pixel farther every place in the mirrored row is
 // one less, so that a stripe finds what the stripe before it had, and only the first one anything
 // new. So the features stay in registers where there are enough of these.
@@ -126,8 +129,7 @@ class Counterparts {
 
   size_t plane_size_;
   const uint8_t* at_[kStripes];  // the first plane's features, by stripe
-  static constexpr int kHeldPlanes = kHeld ? kPlanes : 1;
-  Cell<kStripes> held_[kHeldPlanes];
+  Cell<kStripes> held_[PlanesIf(kHeld, kPlanes)];
 };
 
 // C(x, i) of pixel_cost.h for one stripe of indices. `left` is the left pixel in the first plane.

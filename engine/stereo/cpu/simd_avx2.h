@@ -85,6 +85,10 @@ struct Simd {
         _mm_min_epu16(_mm256_castsi256_si128(a.v), _mm256_extracti128_si256(a.v, 1));
     return _mm_cvtsi128_si32(_mm_minpos_epu16(half)) & 0xffff;
   }
+  static uint64_t ZeroLanes(V a) {
+    return static_cast<uint32_t>(
+        _mm256_movemask_epi8(_mm256_cmpeq_epi8(a.v, _mm256_setzero_si256())));
+  }
   static uint8_t First(V a) {
     return static_cast<uint8_t>(_mm_cvtsi128_si32(_mm256_castsi256_si128(a.v)));
   }

@@ -70,6 +70,7 @@ struct Simd {
         _mm_min_epu16(_mm256_castsi256_si128(half), _mm256_extracti128_si256(half, 1));
     return _mm_cvtsi128_si32(_mm_minpos_epu16(quarter)) & 0xffff;
   }
+  static uint64_t ZeroLanes(V a) { return _mm512_testn_epi8_mask(a.v, a.v); }
   static uint8_t First(V a) {
     return static_cast<uint8_t>(_mm_cvtsi128_si32(_mm512_castsi512_si128(a.v)));
   }

@@ -103,6 +103,16 @@ struct Simd {
     for (int k = 1; k < kLanes / 2; ++k) least = pairs[k] < least ? pairs[k] : least;
     return least;
   }
+  // A bit for each lane, the first one lowest: whether it is 0.
+  static uint64_t ZeroLanes(V a) {
+    const V bits = {1, 2, 4, 8, 16, 32, 64, 128, 1, 2, 4, 8, 16, 32, 64, 128};
+    const V found = static_cast<V>(a == V{}) & bits;
+    uint64_t halves[2];
+    std::memcpy(halves, &found, sizeof halves);
+    // The sum of a half's bytes comes out at the top.
+    constexpr uint64_t kOnes = 0x0101010101010101;
+    return (halves[0] * kOnes >> 56) | (halves[1] * kOnes >> 56 << 8);
+  }
   // The first and the last lane.
   static uint8_t First(V a) { return a[0]; }
   static uint8_t Last(V a) { return a[kLanes - 1]; }

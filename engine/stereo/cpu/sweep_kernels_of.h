@@ -84,11 +84,15 @@ VS_INLINE V LeastButNeighbours(const Layout<kStripes>& layout, int winner,
   return least;
 }
 
-// Selects the left winner of pixel x (selection.h).
+struct Winner {
+  int index;
+  int sum;
+};
+
+// The least sum together with its index, and so the least index among equals.
 template <int kStripes>
-VS_INLINE void SelectLeft(const SweepRow& work, const Layout<kStripes>& layout, int x,
-                          const Cell<kStripes>& sum) {
-  // The least sum together with its index, and so the least index among equals. First lane by lane.
+VS_INLINE Winner FindWinner(const Layout<kStripes>& layout, const Cell<kStripes>& sum) {
+  // First lane by lane.
   V least = sum.v[0];
   V least_index = layout.index.v[0];
   for (int r = 1; r < kStripes; ++r) {
@@ -97,13 +101,34 @@ VS_INLINE void SelectLeft(const SweepRow& work, const Layout<kStripes>& layout, 
   }
   const int pair = Simd::LeastPair(
       Simd::MinPairs(Simd::PairLow(least, least_index), Simd::PairHigh(least, least_index)));
-  const int index = pair & 0xff;
+  return {pair & 0xff, pair >> 8};
+}
+
+// The same where the least sum is known to be 0: the first lane that has one, and its first stripe.
+template <int kStripes>
+VS_INLINE Winner FindZero(const Cell<kStripes>& sum) {
+  uint64_t zeros[kStripes];
+  uint64_t any = 0;
+#pragma GCC unroll 16
+  for (int r = 0; r < kStripes; ++r) any |= zeros[r] = Simd::ZeroLanes(sum.v[r]);
+  const int lane = __builtin_ctzll(any);
+  int stripe = kStripes - 1;
+#pragma GCC unroll 16
+  for (int r = kStripes - 2; r >= 0; --r) stripe = (zeros[r] >> lane & 1) != 0 ? r : stripe;
+  return {lane * kStripes + stripe, 0};
+}
+
+// Notes the left winner of pixel x (selection.h).
+template <int kStripes>
+VS_INLINE void NoteLeft(const SweepRow& work, const Layout<kStripes>& layout, int x,
+                        const Cell<kStripes>& sum, Winner winner) {
+  const int index = winner.index;
   const V second = LeastButNeighbours(layout, index, sum);
   alignas(64) uint8_t sums[kStripes * kLanes];
   sum.Store(sums);
   static constexpr Places<kStripes> kPlaces;
   work.winners.index[x] = static_cast<uint8_t>(index);
-  work.winners.best[x] = static_cast<uint8_t>(pair >> 8);
+  work.winners.best[x] = static_cast<uint8_t>(winner.sum);
   work.winners.second[x] = Simd::LeastByte(second);
   work.winners.before[x] = sums[kPlaces.of[index]];
   work.winners.after[x] = sums[kPlaces.of[index + 2]];
@@ -206,7 +231,8 @@ void SweepPixels(const Plan& shared_plan, const SweepRow& shared_work) {
   constexpr int kCell = kStripes * kLanes;
   // Copies that nobody else can see: a byte that is stored could be any other memory.
   const Plan plan = shared_plan;
-  const SweepRow work = shared_work;
+  SweepRow work = shared_work;
+  if constexpr (kMode == SweepMode::kOnly) work.backward = false;  // so the compiler knows
   const Layout<kStripes> layout(plan);
   const V p1 = Simd::Set(plan.p1);
   const int step = work.backward ? -1 : 1;
@@ -258,7 +284,11 @@ void SweepPixels(const Plan& shared_plan, const SweepRow& shared_work) {
       if (!layout.full) {
         for (int r = 0; r < kStripes; ++r) sum.v[r] = Simd::Or(sum.v[r], layout.beyond.v[r]);
       }
-      SelectLeft(work, layout, x, sum);
+      if constexpr (kMode == SweepMode::kOnly) {
+        NoteLeft(work, layout, x, sum, FindZero(sum));  // a path's costs: the least is always 0
+      } else {
+        NoteLeft(work, layout, x, sum, FindWinner(layout, sum));
+      }
       right.Offer(layout, x, sum);
     }
   }
