@@ -10,8 +10,8 @@
 
 #include "engine/base/recycler.h"
 #include "engine/base/str.h"
-#include "engine/calibration/resample.h"
 #include "engine/calibration/validate_rig.h"
+#include "engine/image/resample.h"
 
 namespace vs {
 namespace {

@@ -4,10 +4,10 @@
 #include <memory>
 
 #include "engine/base/status.h"
-#include "engine/calibration/remap.h"
 #include "engine/image/buffer.h"
 #include "engine/image/frame.h"
 #include "engine/image/rectified_geometry.h"
+#include "engine/image/remap.h"
 #include "engine/image/stereo_rig.h"
 
 namespace vs {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/base/str.h"
-#include "engine/calibration/resample.h"
+#include "engine/image/resample.h"
 
 namespace vs {
 namespace {

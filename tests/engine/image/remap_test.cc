@@ -1,4 +1,4 @@
-#include "engine/calibration/remap.h"
+#include "engine/image/remap.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "engine/calibration/remap.h"
+#include "engine/image/remap.h"
 
 #include <algorithm>
 #include <array>

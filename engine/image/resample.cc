@@ -1,4 +1,4 @@
-#include "engine/calibration/resample.h"
+#include "engine/image/resample.h"
 
 #include <algorithm>
 #include <cmath>
