@@ -11,7 +11,6 @@
 #include "engine/base/recycler.h"
 #include "engine/base/str.h"
 #include "engine/calibration/validate_rig.h"
-#include "engine/image/resample.h"
 
 namespace vs {
 namespace {
@@ -110,13 +109,8 @@ Result<double> CheckedScale(const StereoRig& rig, int width, int height) {
 }  // namespace
 
 struct Rectifier::Maps {
-  int width = 0;  // of the pictures
-  int height = 0;
-  RectifiedGeometry geometry;
+  Rectification rectification;
   std::array<double, 9> rectified_from_left_rotation{};
-  RectifyOptions options;
-  RemapTable left;
-  RemapTable right;
   Recycler<Frame> frames;
 };
 
@@ -141,6 +135,11 @@ Result<Rectifier> Rectifier::Make(const StereoRig& rig, int width, int height,
   const cv::Matx33d rotation(rig.right_from_left_rotation.data());
   const cv::Vec3d translation(rig.right_from_left_translation_m.data());
   auto maps = std::make_shared<Maps>();
+  Rectification& made = maps->rectification;
+  made.raw_width = width;
+  made.raw_height = height;
+  made.half_size = options.half_size;
+  made.interpolation = options.interpolation;
   try {
     cv::Matx33d left_rotation;
     cv::Matx33d right_rotation;
@@ -150,27 +149,24 @@ Result<Rectifier> Rectifier::Make(const StereoRig& rig, int width, int height,
     cv::stereoRectify(left_camera, Distortion(rig.left), right_camera, Distortion(rig.right), size,
                       rotation, translation, left_rotation, right_rotation, left_projection,
                       right_projection, unused, cv::CALIB_ZERO_DISPARITY, options.alpha, size);
-    maps->left =
+    made.left =
         MakeTable(left_camera, rig.left, left_rotation, left_projection, size, options.exact_maps);
-    maps->right = MakeTable(right_camera, rig.right, right_rotation, right_projection, size,
-                            options.exact_maps);
+    made.right = MakeTable(right_camera, rig.right, right_rotation, right_projection, size,
+                           options.exact_maps);
     std::copy_n(left_rotation.val, 9, maps->rectified_from_left_rotation.begin());
     const double focal = left_projection(0, 0);
-    maps->geometry = {.width = size.width,
-                      .height = size.height,
-                      .focal_px = focal,
-                      .baseline_m = -right_projection(0, 3) / focal,
-                      .cx_px = left_projection(0, 2),
-                      .cy_px = left_projection(1, 2),
-                      .principal_offset_px = right_projection(0, 2) - left_projection(0, 2)};
+    made.geometry = {.width = size.width,
+                     .height = size.height,
+                     .focal_px = focal,
+                     .baseline_m = -right_projection(0, 3) / focal,
+                     .cx_px = left_projection(0, 2),
+                     .cy_px = left_projection(1, 2),
+                     .principal_offset_px = right_projection(0, 2) - left_projection(0, 2)};
   } catch (const cv::Exception& error) {
     return InvalidArgument(
         Str("stereo rig \"", rig.name, "\" cannot be rectified: ", error.what()));
   }
-  maps->options = options;
-  maps->width = width;
-  maps->height = height;
-  const RectifiedGeometry& g = maps->geometry;
+  const RectifiedGeometry& g = made.geometry;
   if (!(std::isfinite(g.focal_px) && g.focal_px > 0 && g.baseline_m > 0)) {
     return InvalidArgument(Str("stereo rig \"", rig.name,
                                "\" cannot be rectified: its distortion leaves no common view"));
@@ -179,34 +175,37 @@ Result<Rectifier> Rectifier::Make(const StereoRig& rig, int width, int height,
 }
 
 Result<StereoFrame> Rectifier::Rectify(const StereoFrame& raw, BufferPool& pool) const {
+  const Rectification& how = maps_->rectification;
   const auto rectify = [&](const FramePtr& frame, const RemapTable& table) -> Result<FramePtr> {
     if (frame == nullptr) return InvalidArgument("rectification: a picture of the pair is missing");
     const GreyImage& image = frame->image;
     if (!Fits(image)) {
       return InvalidArgument(Str("rectification: camera ", frame->camera, " gave ", image.width(),
-                                 " x ", image.height(), " px, expected ", maps_->width, " x ",
-                                 maps_->height, " px; set both cameras to the same size"));
+                                 " x ", image.height(), " px, expected ", how.raw_width, " x ",
+                                 how.raw_height, " px; set both cameras to the same size"));
     }
     Frame rectified = *frame;
-    rectified.image = GreyImage(pool, table.width, table.height);
-    const RectifyOptions& options = maps_->options;
-    Remap(options.half_size ? Halved(image, pool) : image, table, options.interpolation,
-          &rectified.image);
+    rectified.image = Rectified(image, how, table, pool);
     return FramePtr(std::allocate_shared<Frame>(maps_->frames, std::move(rectified)));
   };
   StereoFrame pair = raw;
-  VS_ASSIGN_OR_RETURN(pair.left, rectify(raw.left, maps_->left));
-  VS_ASSIGN_OR_RETURN(pair.right, rectify(raw.right, maps_->right));
-  pair.geometry = maps_->geometry;
+  VS_ASSIGN_OR_RETURN(pair.left, rectify(raw.left, how.left));
+  VS_ASSIGN_OR_RETURN(pair.right, rectify(raw.right, how.right));
+  pair.geometry = how.geometry;
   pair.truth = nullptr;
   return pair;
 }
 
-bool Rectifier::Fits(const GreyImage& picture) const {
-  return picture.width() == maps_->width && picture.height() == maps_->height;
+std::shared_ptr<const Rectification> Rectifier::rectification() const {
+  return {maps_, &maps_->rectification};
 }
 
-const RectifiedGeometry& Rectifier::geometry() const { return maps_->geometry; }
+bool Rectifier::Fits(const GreyImage& picture) const {
+  const Rectification& how = maps_->rectification;
+  return picture.width() == how.raw_width && picture.height() == how.raw_height;
+}
+
+const RectifiedGeometry& Rectifier::geometry() const { return maps_->rectification.geometry; }
 
 const std::array<double, 9>& Rectifier::rectified_from_left_rotation() const {
   return maps_->rectified_from_left_rotation;

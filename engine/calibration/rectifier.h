@@ -6,8 +6,7 @@
 #include "engine/base/status.h"
 #include "engine/image/buffer.h"
 #include "engine/image/frame.h"
-#include "engine/image/rectified_geometry.h"
-#include "engine/image/remap.h"
+#include "engine/image/rectification.h"
 #include "engine/image/stereo_rig.h"
 
 namespace vs {
@@ -41,12 +40,15 @@ class Rectifier {
   static Result<Rectifier> Make(const StereoRig& rig, int width, int height,
                                 const RectifyOptions& options = {});
 
+  // Never null, and the same object for copies of this rectifier.
+  std::shared_ptr<const Rectification> rectification() const;
   // Whether it was made for pictures of this size.
   bool Fits(const GreyImage& picture) const;
   // The same pair with rectified pictures and their geometry; no truth, for its pixels moved.
   // Pixels that no camera saw are 0. INVALID_ARGUMENT when a picture has another size.
   Result<StereoFrame> Rectify(const StereoFrame& raw, BufferPool& pool) const;
 
+  // That of rectification().
   const RectifiedGeometry& geometry() const;
   // Row-major; a direction in the left camera's frame, seen in the rectified left frame.
   const std::array<double, 9>& rectified_from_left_rotation() const;
