@@ -9,7 +9,9 @@ namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-Status CheckGeometry(const RectifiedGeometry& geometry) {
+}  // namespace
+
+Status CheckDepthGeometry(const RectifiedGeometry& geometry) {
   if (geometry.focal_px > 0 && geometry.baseline_m > 0) return {};
   return FailedPrecondition(
       Str("depth needs the cameras' geometry, but the focal length is ", geometry.focal_px,
@@ -17,18 +19,19 @@ Status CheckGeometry(const RectifiedGeometry& geometry) {
           " m; rectify the pictures with a stereo rig, or give the geometry with the pictures"));
 }
 
-}  // namespace
+DepthRule DepthRuleOf(const RectifiedGeometry& geometry, int offset_px) {
+  // depth = f B / (stored / 16 + offset + doffs) = 16 f B / (stored + 16 (offset + doffs))
+  return {
+      .scale = static_cast<float>(kDisparityScale * geometry.focal_px * geometry.baseline_m),
+      .shift = static_cast<float>(kDisparityScale * (offset_px + geometry.principal_offset_px))};
+}
 
 Result<DepthMap> DepthFromDisparity(const DisparityMap& map, BufferPool& pool) {
-  VS_RETURN_IF_ERROR(CheckGeometry(map.geometry));
+  VS_RETURN_IF_ERROR(CheckDepthGeometry(map.geometry));
   const int width = map.disparity.width();
   const int height = map.disparity.height();
   DepthMap depth{.depth_m = Image<float>(pool, width, height), .geometry = map.geometry};
-  // depth = f B / (stored / 16 + offset + doffs) = 16 f B / (stored + 16 (offset + doffs))
-  const auto scale =
-      static_cast<float>(kDisparityScale * map.geometry.focal_px * map.geometry.baseline_m);
-  const auto shift =
-      static_cast<float>(kDisparityScale * (map.offset_px + map.geometry.principal_offset_px));
+  const auto [scale, shift] = DepthRuleOf(map.geometry, map.offset_px);
   for (int y = 0; y < height; ++y) {
     const uint16_t* disparity = map.disparity.Row(y);
     float* out = depth.depth_m.Row(y);
@@ -42,7 +45,7 @@ Result<DepthMap> DepthFromDisparity(const DisparityMap& map, BufferPool& pool) {
 }
 
 Result<PointCloud> PointsFromDepth(const DepthMap& map, BufferPool& pool) {
-  VS_RETURN_IF_ERROR(CheckGeometry(map.geometry));
+  VS_RETURN_IF_ERROR(CheckDepthGeometry(map.geometry));
   const int width = map.depth_m.width();
   const int height = map.depth_m.height();
   PointCloud cloud{.x_m = Image<float>(pool, width, height),

@@ -88,18 +88,22 @@ Status ValidateSettings(const SgmSettings& settings) {
   return std::move(faults).ToStatus();
 }
 
+Status ValidateSize(int width, int height) {
+  const bool fits = width >= kMinPictureSize && width <= kMaxPictureWidth &&
+                    height >= kMinPictureSize && height <= kMaxPictureHeight;
+  if (fits) return {};
+  return InvalidArgument(Str("matcher: the pictures have ", width, " x ", height,
+                             " px; the size must be ", kMinPictureSize, " x ", kMinPictureSize,
+                             " to ", kMaxPictureWidth, " x ", kMaxPictureHeight, " px"));
+}
+
 Status ValidatePair(const GreyImage& left, const GreyImage& right) {
   if (!left.SameSizeAs(right)) {
     return InvalidArgument(Str("matcher: the left picture has ", left.width(), " x ", left.height(),
                                " px, the right one ", right.width(), " x ", right.height(),
                                " px; they must be equal"));
   }
-  const bool fits = left.width() >= kMinPictureSize && left.width() <= kMaxPictureWidth &&
-                    left.height() >= kMinPictureSize && left.height() <= kMaxPictureHeight;
-  if (fits) return {};
-  return InvalidArgument(Str("matcher: the pictures have ", left.width(), " x ", left.height(),
-                             " px; the size must be ", kMinPictureSize, " x ", kMinPictureSize,
-                             " to ", kMaxPictureWidth, " x ", kMaxPictureHeight, " px"));
+  return ValidateSize(left.width(), left.height());
 }
 
 }  // namespace vs

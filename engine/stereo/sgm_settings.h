@@ -126,6 +126,8 @@ inline constexpr int kMaxPictureHeight = 3072;
 
 // INVALID_ARGUMENT with one fault for each field that is out of its range.
 Status ValidateSettings(const SgmSettings& settings);
+// INVALID_ARGUMENT unless pictures of this size can be matched.
+Status ValidateSize(int width, int height);
 // INVALID_ARGUMENT unless both pictures have the same size, within the limits above.
 Status ValidatePair(const GreyImage& left, const GreyImage& right);
 

@@ -5,8 +5,23 @@
 
 #include "engine/base/check.h"
 #include "engine/base/str.h"
+#include "engine/stereo/depth.h"
+#include "engine/stereo/match_region.h"
 
 namespace vs {
+namespace {
+
+Status ValidateRaw(const GreyImage& left, const GreyImage& right, const Rectification& expected) {
+  for (const GreyImage* raw : {&left, &right}) {
+    if (raw->width() == expected.raw_width && raw->height() == expected.raw_height) continue;
+    return InvalidArgument(Str("rectification: a picture has ", raw->width(), " x ", raw->height(),
+                               " px, expected ", expected.raw_width, " x ", expected.raw_height,
+                               " px; set both cameras to the same size"));
+  }
+  return ValidateSize(expected.left.width, expected.left.height);
+}
+
+}  // namespace
 
 Result<DisparityMap> StereoMatcher::Match(const GreyImage& left, const GreyImage& right,
                                           const SgmSettings& settings, int threads,
@@ -14,6 +29,45 @@ Result<DisparityMap> StereoMatcher::Match(const GreyImage& left, const GreyImage
   VS_RETURN_IF_ERROR(ValidateSettings(settings));
   VS_RETURN_IF_ERROR(ValidatePair(left, right));
   return MatchPair(left, right, settings, threads, pool);
+}
+
+Result<StereoResult> StereoMatcher::Process(const GreyImage& left, const GreyImage& right,
+                                            const StereoPlan& plan, int threads, BufferPool& pool) {
+  VS_RETURN_IF_ERROR(ValidateSettings(plan.settings));
+  VS_RETURN_IF_ERROR(plan.rectification != nullptr ? ValidateRaw(left, right, *plan.rectification)
+                                                   : ValidatePair(left, right));
+  if (plan.depth) {
+    VS_RETURN_IF_ERROR(CheckDepthGeometry(GeometryOf(plan, left.width(), left.height())));
+  }
+  const Rectification* how = plan.rectification.get();
+  const int width = how != nullptr ? how->left.width : left.width();
+  const int height = how != nullptr ? how->left.height : left.height();
+  const PixelRect whole{0, 0, width, height};
+  // A region is cut out here on the host, so its pair is rectified here, too.
+  return plan.region && Inside(*plan.region, width, height) != whole
+             ? StereoMatcher::ProcessPair(left, right, plan, threads, pool)
+             : ProcessPair(left, right, plan, threads, pool);
+}
+
+Result<StereoResult> StereoMatcher::ProcessPair(const GreyImage& left, const GreyImage& right,
+                                                const StereoPlan& plan, int threads,
+                                                BufferPool& pool) {
+  const auto rectified = [&](const GreyImage& picture, RemapTable Rectification::*table) {
+    const Rectification* how = plan.rectification.get();
+    return how == nullptr ? picture : Rectified(picture, *how, how->*table, pool);
+  };
+  StereoResult result{.left = rectified(left, &Rectification::left)};
+  const GreyImage right_picture = rectified(right, &Rectification::right);
+  const int width = result.left.width();
+  const int height = result.left.height();
+  const PixelRect region = plan.region.value_or(PixelRect{0, 0, width, height});
+  VS_ASSIGN_OR_RETURN(result.disparity, MatchRegion(*this, result.left, right_picture, region,
+                                                    plan.settings, threads, pool));
+  result.disparity.geometry = GeometryOf(plan, width, height);
+  if (plan.depth) {
+    VS_ASSIGN_OR_RETURN(result.depth, DepthFromDisparity(result.disparity, pool));
+  }
+  return result;
 }
 
 StereoMatchers& StereoMatchers::Get() {

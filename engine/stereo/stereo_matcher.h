@@ -11,6 +11,7 @@
 #include "engine/image/disparity_map.h"
 #include "engine/image/image.h"
 #include "engine/stereo/sgm_settings.h"
+#include "engine/stereo/stereo_plan.h"
 
 namespace vs {
 
@@ -30,6 +31,12 @@ class StereoMatcher {
   // there is not enough memory.
   Result<DisparityMap> Match(const GreyImage& left, const GreyImage& right,
                              const SgmSettings& settings, int threads, BufferPool& pool);
+  // All the way of a pair: rectifies it, matches it and computes depth, as far as `plan` wants it;
+  // exactly what Rectified, MatchRegion and DepthFromDisparity make one after the other. A device
+  // does all without coming back to the host in between; elsewhere it is those three. Errors as
+  // these, INVALID_ARGUMENT also for pictures that do not have the raw size.
+  Result<StereoResult> Process(const GreyImage& left, const GreyImage& right,
+                               const StereoPlan& plan, int threads, BufferPool& pool);
   // The large memory that it keeps from picture to picture (each backend's text says how much it
   // takes); what the pool holds does not count.
   virtual size_t WorkingBytes() const = 0;
@@ -40,6 +47,10 @@ class StereoMatcher {
   virtual Result<DisparityMap> MatchPair(const GreyImage& left, const GreyImage& right,
                                          const SgmSettings& settings, int threads,
                                          BufferPool& pool) = 0;
+  // What Process does with valid pictures and a valid plan of the whole picture; what a
+  // backend on the host need not write.
+  virtual Result<StereoResult> ProcessPair(const GreyImage& left, const GreyImage& right,
+                                           const StereoPlan& plan, int threads, BufferPool& pool);
 };
 
 // NOT_FOUND or UNAVAILABLE when this machine cannot run the backend (no such device, no such
