@@ -40,7 +40,9 @@ class OneRig final : public RigStore {
 
 // What some blocks must be told before they can run here.
 const std::map<std::string, std::map<std::string, ParamValue>> kSettings = {
-    {"RectifyPair", {{"rig", "synthetic"}}}, {"SaveImages", {{"min_free_mb", int64_t{0}}}}};
+    {"RectifyPair", {{"rig", "synthetic"}}},
+    {"SaveImages", {{"min_free_mb", int64_t{0}}}},
+    {"StereoDepth", {{"rig", "synthetic"}}}};
 
 // Parameters in the unit of whatever the user connects: no limit could be right for all of them.
 const std::set<std::string> kUnlimited = {"RangeCheck.min", "RangeCheck.max",

@@ -13,6 +13,8 @@
 #include "engine/stereo/sgm_presets.h"
 #include "engine/stereo/stereo_matcher.h"
 #include "tests/engine/stereo/map_difference.h"
+#include "tests/engine/stereo/pictures.h"
+#include "tests/engine/stereo/random_rectification.h"
 #include "tests/support/block_harness.h"
 #include "tests/support/count_allocations.h"
 #include "tests/support/temp_folder.h"
@@ -278,6 +280,84 @@ TEST_F(RectifyBlock, FollowsItsParametersLive) {
   ASSERT_TRUE(block_.Set("alpha", 1.0).ok());
   ASSERT_TRUE(block_.Run().ok());
   EXPECT_LT(block_.Output<StereoFrame>("rectified")->geometry->focal_px, narrow);
+}
+
+// The blocks RectifyPair, SgmStereo and DisparityToDepth, and the one that is all three.
+class ThreeBlocksAndOne : public RectifyBlock {
+ protected:
+  void SetUp() override {
+    RectifyBlock::SetUp();
+    one_.environment.folders.data_dir = folder_.path();
+    one_.Input("pair", RawPair());
+    ASSERT_TRUE(block_.Set("rig_file", std::string("demo.json")).ok());
+    ASSERT_TRUE(one_.Set("rig_file", std::string("demo.json")).ok());
+  }
+  // To the block that has this parameter, and to the one.
+  void Set(BlockHarness* block, const std::string& name, const ParamValue& value) {
+    ASSERT_TRUE(block->Set(name, value).ok()) << name;
+    ASSERT_TRUE(one_.Set(name, value).ok()) << name;
+  }
+  void ExpectTheSame() {
+    const Status status = one_.Run();
+    ASSERT_TRUE(status.ok()) << status.ToString();
+    ASSERT_TRUE(block_.Run().ok());
+    match_.Input("pair", block_.Output("rectified"));
+    ASSERT_TRUE(match_.Run().ok());
+    depth_.Input("disparity", match_.Output("disparity"));
+    ASSERT_TRUE(depth_.Run().ok());
+
+    const Frame& left = *one_.Output<Frame>("left");
+    const Frame& expected = *block_.Output<StereoFrame>("rectified")->left;
+    EXPECT_EQ(RowsOf(left.image), RowsOf(expected.image));
+    EXPECT_EQ(left.number, expected.number);
+    EXPECT_EQ(left.camera, expected.camera);
+    const DisparityMap& map = *one_.Output<DisparityMap>("disparity");
+    EXPECT_EQ(MapDifference(map, *match_.Output<DisparityMap>("disparity")), "");
+    EXPECT_EQ(map.geometry, match_.Output<DisparityMap>("disparity")->geometry);
+    EXPECT_EQ(DepthDifference(*one_.Output<DepthMap>("depth"), *depth_.Output<DepthMap>("depth")),
+              "");
+  }
+
+  BlockHarness match_{"SgmStereo"};
+  BlockHarness depth_{"DisparityToDepth"};
+  BlockHarness one_{"StereoDepth"};
+};
+
+TEST_F(ThreeBlocksAndOne, GiveTheSame) {
+  ASSERT_TRUE(block_.Start().ok());
+  ASSERT_TRUE(match_.Start().ok());
+  ASSERT_TRUE(one_.Start().ok());
+  ExpectTheSame();
+  Set(&block_, "interpolation", std::string("cubic"));
+  Set(&block_, "precision", std::string("float"));
+  Set(&block_, "resolution", std::string("half"));
+  Set(&match_, "preset", std::string("strict"));
+  Set(&match_, "num_disparities", int64_t{48});
+  ExpectTheSame();
+  Set(&match_, "roi_x", int64_t{100});
+  Set(&match_, "roi_height", int64_t{60});
+  ExpectTheSame();
+}
+
+TEST_F(ThreeBlocksAndOne, RefuseTheSame) {
+  ASSERT_TRUE(one_.Set("p1", int64_t{40}).ok());
+  ASSERT_TRUE(one_.Set("p2", int64_t{20}).ok());
+  EXPECT_THAT(one_.Start().ToString(), HasSubstr("p1: is 40; it must be 0 .. p2, which is 20"));
+  ASSERT_TRUE(one_.Set("p2", int64_t{40}).ok());
+  ASSERT_TRUE(one_.Set("rig_file", std::string("gone.json")).ok());
+  EXPECT_THAT(one_.Start().ToString(), HasSubstr("gone.json"));
+  ASSERT_TRUE(one_.Set("rig_file", std::string("demo.json")).ok());
+  ASSERT_TRUE(one_.Start().ok());
+  one_.Input("pair", Pair());
+  EXPECT_THAT(one_.Run().ToString(), HasSubstr("FAILED_PRECONDITION: this pair is rectified"));
+}
+
+TEST_F(ThreeBlocksAndOne, TakeNoMemoryOnceWarm) {
+  ASSERT_TRUE(one_.Start().ok());
+  for (int warm_up = 0; warm_up < 4; ++warm_up) ASSERT_TRUE(one_.Run().ok());
+  const uint64_t before = test::Allocations();
+  ASSERT_TRUE(one_.Run().ok());
+  EXPECT_EQ(test::Allocations(), before);
 }
 
 // From the second frame on, the chain lives on what it has.

@@ -1,0 +1,78 @@
+// From a raw pair to disparity and depth in one step.
+#include <memory>
+#include <utility>
+
+#include "engine/blocks/prepare/rectify_params.h"
+#include "engine/blocks/stereo/matcher_params.h"
+#include "engine/blocks/stereo/sgm_params.h"
+#include "engine/core/block.h"
+#include "engine/stereo/stereo_matcher.h"
+
+namespace vs {
+namespace {
+
+class StereoDepth final : public Block {
+ public:
+  In<StereoFrame> pair{this, "pair", "The pair as the cameras took it."};
+  Out<Frame> left{this, "left",
+                  "The rectified left picture, whose pixels disparity and depth belong to."};
+  Out<DisparityMap> disparity{this, "disparity",
+                              "How far each point moves from the left picture to the right one; "
+                              "near points move more."};
+  Out<DepthMap> depth{this, "depth",
+                      "Distance of each pixel along the camera's axis; unknown where there is no "
+                      "disparity."};
+
+  RectifyParams rectify{this};
+  MatcherParams who{this};
+  SgmParams sgm{this};
+
+  Status CheckParams() const override { return ValidateSettings(sgm.Settings()); }
+
+  Status Start() override {
+    VS_RETURN_IF_ERROR(rectify.Start(environment()));
+    VS_ASSIGN_OR_RETURN(matcher_, who.MakeMatcher());
+    return {};
+  }
+
+  Status Run() override {
+    if (pair->left == nullptr || pair->right == nullptr) {
+      return InvalidArgument("a picture of the pair is missing");
+    }
+    if (pair->geometry) {
+      return FailedPrecondition(
+          "this pair is rectified already; use SgmStereo and DisparityToDepth in place of this "
+          "block");
+    }
+    VS_ASSIGN_OR_RETURN(const Rectifier* rectifier, rectify.For(pair->left->image));
+    const StereoPlan plan{.rectification = rectifier->rectification(),
+                          .settings = sgm.Settings(),
+                          .region = sgm.Region(),
+                          .depth = true};
+    VS_ASSIGN_OR_RETURN(
+        StereoResult result,
+        matcher_->Process(pair->left->image, pair->right->image, plan, who.Threads(), pool()));
+    Frame picture = *pair->left;
+    picture.image = std::move(result.left);
+    left.Set(std::move(picture));
+    disparity.Set(std::move(result.disparity));
+    depth.Set(std::move(result.depth));
+    return {};
+  }
+
+  void Stop() override { matcher_.reset(); }
+
+ private:
+  std::unique_ptr<StereoMatcher> matcher_;
+};
+
+VS_REGISTER_BLOCK(
+    StereoDepth,
+    {.category = "Stereo",
+     .doc = "Rectifies a pair, matches it and computes depth: exactly what RectifyPair, SgmStereo "
+            "and DisparityToDepth give one after the other. Take it where a GPU matches: pictures "
+            "go there once and depth comes back once. Take the three blocks to work on what lies "
+            "between them."});
+
+}  // namespace
+}  // namespace vs
