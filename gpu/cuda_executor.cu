@@ -7,11 +7,10 @@
 #include <utility>
 
 #include "engine/base/str.h"
-#include "engine/stereo/path_cost.h"
-#include "engine/stereo/selection.h"
 #include "gpu/cuda_device.h"
 #include "gpu/cuda_executor.h"
 #include "gpu/devices.h"
+#include "gpu/download.h"
 #include "gpu/frame.h"
 #include "gpu/stages.h"
 
@@ -57,25 +56,24 @@ class CudaExecutor final : public Executor {
   ~CudaExecutor() override;
 
   Status Open();
-  Status Prepare(const SgmSettings& settings, int width, int height) override;
-  Result<DisparityMap> Run(const GreyImage& left, const GreyImage& right,
+  Status Prepare(const StereoPlan& plan, int width, int height) override;
+  Result<StereoResult> Run(const GreyImage& left, const GreyImage& right,
                            BufferPool& pool) override;
   size_t DeviceBytes() const override { return bytes_; }
   int64_t StagesNs() const override { return stages_ns_; }
 
  private:
-  Status MakeRoom(const SgmSettings& settings, int width, int height);
+  Status MakeRoom(const StereoPlan& plan, int width, int height);
   void GiveBack();
   Status Record();
   void Stage(const GreyImage& picture, int view);
-  size_t InputBytes() const;
-  DisparityMap MapIn(const Buffer& result) const;
+  size_t UploadBytes() const;
 
   CudaDevice& device_;
   const uint64_t generation_;
   const CudaExecutorOptions options_;
   BufferPool host_memory_;
-  Buffer staging_;  // input and P2 as they lie on the device
+  Buffer staging_;  // both pictures as they lie on the device
 
   cudaStream_t stream_ = nullptr;
   cudaEvent_t begin_ = nullptr;
@@ -84,9 +82,10 @@ class CudaExecutor final : public Executor {
   size_t bytes_ = 0;  // of `memory_`
   cudaGraphExec_t stages_ = nullptr;
   bool prepared_ = false;
+  StereoPlan plan_;
+  size_t kept_bytes_ = 0;
   Frame frame_;
-  DeviceMap result_{};
-  size_t result_bytes_ = 0;
+  DeviceMap map_{};
   int64_t stages_ns_ = 0;
   int frames_ = 0;
 };
@@ -117,29 +116,29 @@ Status CudaExecutor::Open() {
   return {};
 }
 
-Status CudaExecutor::Prepare(const SgmSettings& settings, int width, int height) {
-  if (prepared_ && frame_.settings == settings && frame_.width == width &&
-      frame_.height == height) {
+Status CudaExecutor::Prepare(const StereoPlan& plan, int width, int height) {
+  if (prepared_ && plan_ == plan && frame_.raw_width == width && frame_.raw_height == height) {
     return {};
   }
   prepared_ = false;
   // Before the device is entered: pools enter it themselves.
-  const Frame measure = FrameMemory(settings, width, height, nullptr).frame();
   staging_ = {};
-  staging_ = host_memory_.Acquire(2 * (static_cast<size_t>(measure.Pixels()) + 256) + 256);
+  staging_ = host_memory_.Acquire(2 * (static_cast<size_t>(width) * height + 256));
+  kept_bytes_ = FrameMemory(plan, width, height, nullptr).KeptBytes();
+  const Buffer kept = host_memory_.Acquire(kept_bytes_);
+  FillKept(plan, FrameMemory(plan, width, height, kept.data).frame());
   VS_ASSIGN_OR_RETURN(const auto use, device_.Enter(generation_));
-  VS_RETURN_IF_ERROR(MakeRoom(settings, width, height));
-  const Penalties penalties = MakePenalties(settings);
-  const auto p2_at = reinterpret_cast<const std::byte*>(frame_.p2) -
-                     reinterpret_cast<const std::byte*>(frame_.input[kLeft]);
-  std::memcpy(staging_.data + p2_at, penalties.p2.data(), penalties.p2.size());
+  VS_RETURN_IF_ERROR(MakeRoom(plan, width, height));
+  VS_CUDA(cudaMemcpyAsync(memory_, kept.data, kept_bytes_, cudaMemcpyHostToDevice, stream_));
+  VS_CUDA(cudaStreamSynchronize(stream_));  // `kept` goes
   VS_RETURN_IF_ERROR(Record());
+  plan_ = plan;
   prepared_ = true;
   return {};
 }
 
-Status CudaExecutor::MakeRoom(const SgmSettings& settings, int width, int height) {
-  const size_t needed = FrameMemory(settings, width, height, nullptr).Bytes();
+Status CudaExecutor::MakeRoom(const StereoPlan& plan, int width, int height) {
+  const size_t needed = FrameMemory(plan, width, height, nullptr).Bytes();
   GiveBack();
   void* memory = nullptr;
   const cudaError_t got = cudaMalloc(&memory, needed);
@@ -149,7 +148,7 @@ Status CudaExecutor::MakeRoom(const SgmSettings& settings, int width, int height
     size_t total = 0;
     VS_CUDA(cudaMemGetInfo(&free, &total));
     return ResourceExhausted(Str("GPU ", device_.index(), ": pictures of ", width, " x ", height,
-                                 " px with ", settings.num_disparities, " disparities need ",
+                                 " px with ", plan.settings.num_disparities, " disparities need ",
                                  needed, " bytes of its memory, ", free,
                                  " are available; search a smaller range, match smaller pictures, "
                                  "or choose another backend"));
@@ -157,7 +156,7 @@ Status CudaExecutor::MakeRoom(const SgmSettings& settings, int width, int height
   VS_RETURN_IF_ERROR(device_.Check(got, "cudaMalloc"));
   memory_ = static_cast<std::byte*>(memory);
   bytes_ = needed;
-  frame_ = FrameMemory(settings, width, height, memory_).frame();
+  frame_ = FrameMemory(plan, width, height, memory_).frame();
   return {};
 }
 
@@ -175,7 +174,7 @@ Status CudaExecutor::Record() {
   VS_CUDA(cudaStreamBeginCapture(stream_, cudaStreamCaptureModeRelaxed));
   CudaLaunch launch(stream_);
   const cudaError_t cleared = cudaMemsetAsync(frame_.counts, 0, sizeof *frame_.counts, stream_);
-  result_ = RunStages(launch, frame_);
+  map_ = RunStages(launch, frame_);
   cudaGraph_t graph = nullptr;
   const cudaError_t recorded = cudaStreamEndCapture(stream_, &graph);
   Status status = device_.Check(launch.error(), "cudaLaunchKernelEx");
@@ -187,18 +186,16 @@ Status CudaExecutor::Record() {
   if (graph != nullptr) (void)device_.Check(cudaGraphDestroy(graph), "cudaGraphDestroy");
   VS_RETURN_IF_ERROR(status);
   VS_CUDA(cudaGraphUpload(stages_, stream_));
-  result_bytes_ =
-      static_cast<size_t>(result_.reason - reinterpret_cast<uint8_t*>(result_.disparity)) +
-      static_cast<size_t>(frame_.Pixels());
   return {};
 }
 
-size_t CudaExecutor::InputBytes() const {
-  return static_cast<size_t>(frame_.p2 - frame_.input[kLeft]) + 256;
+size_t CudaExecutor::UploadBytes() const {
+  return static_cast<size_t>(frame_.uploaded[kRight] - frame_.uploaded[kLeft]) +
+         static_cast<size_t>(frame_.raw_width) * frame_.raw_height;
 }
 
 void CudaExecutor::Stage(const GreyImage& picture, int view) {
-  std::byte* to = staging_.data + (frame_.input[view] - frame_.input[kLeft]);
+  std::byte* to = staging_.data + (frame_.uploaded[view] - frame_.uploaded[kLeft]);
   const auto width = static_cast<size_t>(picture.width());
   if (picture.stride_bytes() == width) {
     std::memcpy(to, picture.Row(0), width * static_cast<size_t>(picture.height()));
@@ -207,13 +204,14 @@ void CudaExecutor::Stage(const GreyImage& picture, int view) {
   for (int y = 0; y < picture.height(); ++y, to += width) std::memcpy(to, picture.Row(y), width);
 }
 
-Result<DisparityMap> CudaExecutor::Run(const GreyImage& left, const GreyImage& right,
+Result<StereoResult> CudaExecutor::Run(const GreyImage& left, const GreyImage& right,
                                        BufferPool& /*pool*/) {
-  const Buffer result = host_memory_.Acquire(result_bytes_);
+  const Download download = DownloadOf(frame_, map_);
+  const Buffer result = host_memory_.Acquire(download.size_bytes);
   VS_ASSIGN_OR_RETURN(const auto use, device_.Enter(generation_));
   if (options_.poison) {
     std::memset(result.data, kPoison, result.size_bytes);
-    VS_CUDA(cudaMemsetAsync(memory_, kPoison, bytes_, stream_));
+    VS_CUDA(cudaMemsetAsync(memory_ + kept_bytes_, kPoison, bytes_ - kept_bytes_, stream_));
   }
   if (++frames_ == options_.spoil_frame) {
     CudaLaunch launch(stream_);
@@ -221,38 +219,18 @@ Result<DisparityMap> CudaExecutor::Run(const GreyImage& left, const GreyImage& r
   }
   Stage(left, kLeft);
   Stage(right, kRight);
-  VS_CUDA(cudaMemcpyAsync(const_cast<uint8_t*>(frame_.input[kLeft]), staging_.data, InputBytes(),
+  VS_CUDA(cudaMemcpyAsync(frame_.uploaded[kLeft], staging_.data, UploadBytes(),
                           cudaMemcpyHostToDevice, stream_));
   VS_CUDA(cudaEventRecord(begin_, stream_));
   VS_CUDA(cudaGraphLaunch(stages_, stream_));
   VS_CUDA(cudaEventRecord(end_, stream_));
-  VS_CUDA(cudaMemcpyAsync(result.data, result_.disparity, result_bytes_, cudaMemcpyDeviceToHost,
+  VS_CUDA(cudaMemcpyAsync(result.data, download.begin, download.size_bytes, cudaMemcpyDeviceToHost,
                           stream_));
   VS_CUDA(cudaStreamSynchronize(stream_));
   float ms = 0;
   VS_CUDA(cudaEventElapsedTime(&ms, begin_, end_));
   stages_ns_ = static_cast<int64_t>(ms * 1e6F);
-  return MapIn(result);
-}
-
-DisparityMap CudaExecutor::MapIn(const Buffer& result) const {
-  const auto part = [&](const void* on_device, size_t size_bytes) {
-    const auto at = static_cast<const std::byte*>(on_device) -
-                    reinterpret_cast<const std::byte*>(result_.disparity);
-    return Buffer{result.data + at, size_bytes, result.place, result.owner};
-  };
-  const int width = frame_.width;
-  const int height = frame_.height;
-  const auto row = static_cast<size_t>(width);
-  const size_t pixels = row * static_cast<size_t>(height);
-  DisparityMap map{
-      .disparity = Image<uint16_t>(part(result_.disparity, 2 * pixels), width, height, 2 * row),
-      .confidence = GreyImage(part(result_.confidence, pixels), width, height, row),
-      .reason = GreyImage(part(result_.reason, pixels), width, height, row),
-      .offset_px = DisparityOffset(frame_.settings)};
-  map.geometry.width = width;
-  map.geometry.height = height;
-  return map;
+  return ResultIn(result, plan_, frame_, map_, left);
 }
 
 }  // namespace

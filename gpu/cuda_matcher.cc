@@ -33,40 +33,48 @@ class CudaMatcher final : public StereoMatcher {
   Result<DisparityMap> MatchPair(const GreyImage& left, const GreyImage& right,
                                  const SgmSettings& settings, int threads,
                                  BufferPool& pool) override {
-    if (executor_ != nullptr || NowNs() - failed_ns_ >= kForgetNs) {
-      Result<DisparityMap> map = RunOnDevice(left, right, settings, pool);
-      if (map.has_value()) {
-        seat_.Works();
-        substitute_.reset();
-        return map;
-      }
-      const bool refused = map.error().code() == StatusCode::kResourceExhausted;
-      if (refused && executor_ != nullptr && substitute_ == nullptr) return map;
-      VS_RETURN_IF_ERROR(DoWithout(map.error()));
-    }
-    return substitute_->Match(left, right, settings, threads, pool);
+    VS_ASSIGN_OR_RETURN(StereoResult result,
+                        ProcessPair(left, right, {.settings = settings}, threads, pool));
+    return std::move(result.disparity);
   }
 
-  Result<DisparityMap> RunOnDevice(const GreyImage& left, const GreyImage& right,
-                                   const SgmSettings& settings, BufferPool& pool) {
+  Result<StereoResult> ProcessPair(const GreyImage& left, const GreyImage& right,
+                                   const StereoPlan& plan, int threads, BufferPool& pool) override {
+    if (executor_ != nullptr || NowNs() - failed_ns_ >= kForgetNs) {
+      Result<StereoResult> result = RunOnDevice(left, right, plan, pool);
+      if (result.has_value()) {
+        seat_.Works();
+        substitute_.reset();
+        return result;
+      }
+      const bool refused = result.error().code() == StatusCode::kResourceExhausted;
+      if (refused && executor_ != nullptr && substitute_ == nullptr) return result;
+      VS_RETURN_IF_ERROR(DoWithout(result.error()));
+    }
+    return substitute_->Process(left, right, plan, threads, pool);
+  }
+
+  Result<StereoResult> RunOnDevice(const GreyImage& left, const GreyImage& right,
+                                   const StereoPlan& plan, BufferPool& pool) {
     if (executor_ == nullptr) {
       VS_RETURN_IF_ERROR(MakeExecutor());
-      return RunOnce(left, right, settings, pool);
+      return RunOnce(left, right, plan, pool);
     }
-    Result<DisparityMap> map = RunOnce(left, right, settings, pool);
-    if (map.has_value() || map.error().code() == StatusCode::kResourceExhausted) return map;
+    Result<StereoResult> result = RunOnce(left, right, plan, pool);
+    if (result.has_value()) return result;
+    if (result.error().code() == StatusCode::kResourceExhausted) return result;
     const int64_t now_ns = NowNs();
     const bool again = failed_ns_ != 0 && now_ns - failed_ns_ < kForgetNs;
     failed_ns_ = now_ns;
-    if (again) return map;
-    LogWarn("gpu", Str("is started anew after: ", map.error().message()));
+    if (again) return result;
+    LogWarn("gpu", Str("is started anew after: ", result.error().message()));
     VS_RETURN_IF_ERROR(MakeExecutor());
-    return RunOnce(left, right, settings, pool);
+    return RunOnce(left, right, plan, pool);
   }
 
-  Result<DisparityMap> RunOnce(const GreyImage& left, const GreyImage& right,
-                               const SgmSettings& settings, BufferPool& pool) {
-    VS_RETURN_IF_ERROR(executor_->Prepare(settings, left.width(), left.height()));
+  Result<StereoResult> RunOnce(const GreyImage& left, const GreyImage& right,
+                               const StereoPlan& plan, BufferPool& pool) {
+    VS_RETURN_IF_ERROR(executor_->Prepare(plan, left.width(), left.height()));
     return executor_->Run(left, right, pool);
   }
 

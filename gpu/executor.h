@@ -7,9 +7,8 @@
 
 #include "engine/base/status.h"
 #include "engine/image/buffer.h"
-#include "engine/image/disparity_map.h"
 #include "engine/image/image.h"
-#include "engine/stereo/sgm_settings.h"
+#include "engine/stereo/stereo_plan.h"
 
 namespace vs::gpu {
 
@@ -20,12 +19,13 @@ class Executor {
  public:
   virtual ~Executor() = default;
 
-  // Makes room for frames of this size and with these valid settings; nothing happens if that was
-  // done last. RESOURCE_EXHAUSTED says how many bytes are needed and how many there are.
-  virtual Status Prepare(const SgmSettings& settings, int width, int height) = 0;
-  // One frame: up go two pictures of the prepared size, down comes their map, as StereoMatcher
-  // gives it. Its memory is the executor's own, pinned for the device, or comes from `pool`.
-  virtual Result<DisparityMap> Run(const GreyImage& left, const GreyImage& right,
+  // Makes room for pictures of this size that go by this valid plan of the whole picture (a region
+  // is ignored), and takes its tables up; nothing happens if that was done last. RESOURCE_EXHAUSTED
+  // says how many bytes are needed and how many there are.
+  virtual Status Prepare(const StereoPlan& plan, int width, int height) = 0;
+  // One frame: up go two pictures of the prepared size, down comes what StereoMatcher::Process
+  // gives. Its memory is the executor's own, pinned for the device, or comes from `pool`.
+  virtual Result<StereoResult> Run(const GreyImage& left, const GreyImage& right,
                                    BufferPool& pool) = 0;
   // Memory of the device that it holds.
   virtual size_t DeviceBytes() const = 0;

@@ -3,7 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/image/remap.h"
+#include "engine/stereo/depth.h"
 #include "engine/stereo/sgm_settings.h"
+#include "engine/stereo/stereo_plan.h"
 
 namespace vs::gpu {
 
@@ -44,7 +47,16 @@ struct Frame {
   // (x, y, i) at (y * width + x) * pitch + i. The last few of a pixel mean nothing.
   int pitch = 0;
 
-  const uint8_t* input[2] = {};  // as uploaded
+  // As uploaded, raw_width x raw_height; without rectification these are `input`.
+  uint8_t* uploaded[2] = {};
+  int raw_width = 0;
+  int raw_height = 0;
+  uint8_t* halved[2] = {};  // null unless they are to be halved
+  // Where the pixels of `input` come from (remap.h): one of both, or neither.
+  const RemapTable::Source* sources[2] = {};
+  const RemapTable::Position* positions[2] = {};
+  Interpolation interpolation = Interpolation::kLinear;
+  uint8_t* input[2] = {};        // the rectified pair
   GreyCounts* counts = nullptr;  // cleared before each frame
   Conditioning* conditioning = nullptr;
   uint8_t* across[2] = {};  // half way through the blur
@@ -73,31 +85,41 @@ struct Frame {
   uint8_t* winner_after = nullptr;
   uint8_t* right_index = nullptr;  // by pixel of the right view
 
+  DepthRule depth_rule;
+  float* depth_m = nullptr;    // by pixel; null if not wanted
   DeviceMap map[2] = {};       // filters read one and write the other
   uint32_t* label = nullptr;   // speckle filter: by pixel
   uint32_t* region = nullptr;  // pixels of the region, by its label
 
   constexpr int Pixels() const { return width * height; }
+  constexpr bool Rectifies() const { return input[kLeft] != uploaded[kLeft]; }
 };
 
-// The device memory of frames of one size and one kind of settings.
+// The device memory of frames of one size that go by one plan, which has no region.
 class FrameMemory {
  public:
   // `base` (256-byte aligned) may be null: then only the size counts.
-  // INVALID settings are the caller's bug.
-  FrameMemory(const SgmSettings& settings, int width, int height, std::byte* base);
+  // Width and height of the pictures as they are uploaded. An invalid plan is the caller's bug.
+  FrameMemory(const StereoPlan& plan, int raw_width, int raw_height, std::byte* base);
 
   // Whose pointers lie in [base, base + Bytes()).
   const Frame& frame() const { return frame_; }
   size_t Bytes() const { return used_; }
+  // So many bytes at the beginning are the same for all frames: FillKept writes them.
+  size_t KeptBytes() const { return kept_; }
 
  private:
+  void TakeMap(size_t pixels, DeviceMap* map);
   template <class T>
   void Take(size_t count, T** to);
 
   Frame frame_;
   std::byte* base_;
   size_t used_ = 0;
+  size_t kept_ = 0;
 };
+
+// Penalties and tables, into the memory of `frame`, which is the host's.
+void FillKept(const StereoPlan& plan, const Frame& frame);
 
 }  // namespace vs::gpu

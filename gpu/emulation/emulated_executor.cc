@@ -5,9 +5,7 @@
 #include <cstring>
 #include <memory>
 
-#include "engine/stereo/path_cost.h"
-#include "engine/stereo/refine.h"
-#include "engine/stereo/selection.h"
+#include "gpu/download.h"
 #include "gpu/frame.h"
 #include "gpu/stages.h"
 
@@ -21,28 +19,28 @@ class EmulatedExecutor final : public Executor {
  public:
   explicit EmulatedExecutor(uint32_t seed) : launch_(seed) {}
 
-  Status Prepare(const SgmSettings& settings, int width, int height) override {
-    bytes_ = FrameMemory(settings, width, height, nullptr).Bytes();
+  Status Prepare(const StereoPlan& plan, int width, int height) override {
+    plan_ = plan;
+    const FrameMemory needed(plan, width, height, nullptr);
+    bytes_ = needed.Bytes();
+    kept_bytes_ = needed.KeptBytes();
     memory_.reset(static_cast<std::byte*>(::operator new(bytes_, kAlignment)));
-    frame_ = FrameMemory(settings, width, height, memory_.get()).frame();
+    frame_ = FrameMemory(plan, width, height, memory_.get()).frame();
+    FillKept(plan, frame_);
     return {};
   }
 
-  Result<DisparityMap> Run(const GreyImage& left, const GreyImage& right,
+  Result<StereoResult> Run(const GreyImage& left, const GreyImage& right,
                            BufferPool& pool) override {
-    std::memset(memory_.get(), kPoison, bytes_);
+    std::memset(memory_.get() + kept_bytes_, kPoison, bytes_ - kept_bytes_);
     std::memset(frame_.counts, 0, sizeof *frame_.counts);
-    const Penalties penalties = MakePenalties(frame_.settings);
-    std::copy(penalties.p2.begin(), penalties.p2.end(), const_cast<uint8_t*>(frame_.p2));
-    Upload(left, const_cast<uint8_t*>(frame_.input[kLeft]));
-    Upload(right, const_cast<uint8_t*>(frame_.input[kRight]));
-    const DeviceMap result = RunStages(launch_, frame_);
-    DisparityMap map = MakeDisparityMap(frame_.width, frame_.height,
-                                        DisparityOffset(frame_.settings), pool);
-    Download(result.disparity, &map.disparity);
-    Download(result.confidence, &map.confidence);
-    Download(result.reason, &map.reason);
-    return map;
+    Upload(left, frame_.uploaded[kLeft]);
+    Upload(right, frame_.uploaded[kRight]);
+    const DeviceMap map = RunStages(launch_, frame_);
+    const Download download = DownloadOf(frame_, map);
+    const Buffer bytes = pool.Acquire(download.size_bytes);
+    std::memcpy(bytes.data, download.begin, download.size_bytes);
+    return ResultIn(bytes, plan_, frame_, map, left);
   }
 
   size_t DeviceBytes() const override { return bytes_; }
@@ -58,16 +56,11 @@ class EmulatedExecutor final : public Executor {
       std::copy_n(picture.Row(y), picture.width(), to + static_cast<size_t>(y) * picture.width());
     }
   }
-  template <class T>
-  static void Download(const T* from, Image<T>* image) {
-    for (int y = 0; y < image->height(); ++y) {
-      std::copy_n(from + static_cast<size_t>(y) * image->width(), image->width(), image->Row(y));
-    }
-  }
-
   EmulatedLaunch launch_;
+  StereoPlan plan_;
   Frame frame_;
   size_t bytes_ = 0;
+  size_t kept_bytes_ = 0;
   std::unique_ptr<std::byte, Free> memory_;
 };
 

@@ -85,6 +85,11 @@ inline uint32_t AtomicAdd(uint32_t* at, uint32_t v) {
 }
 inline uint32_t ReadShared(const uint32_t* at) { return *at; }
 
+// Needs -ffp-contract=off where a CPU could do two at once.
+inline float AddFloats(float a, float b) { return a + b; }
+inline float MultiplyFloats(float a, float b) { return a * b; }
+inline float DivideFloats(float a, float b) { return a / b; }
+
 inline int CountBits(uint32_t v) { return __builtin_popcount(v); }
 // Byte k of the result is byte (selector >> 4 k) & 7 of the eight bytes of a and then b.
 inline uint32_t BytePermute(uint32_t a, uint32_t b, uint32_t selector) {

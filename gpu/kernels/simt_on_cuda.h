@@ -52,6 +52,11 @@ VS_ON_DEVICE uint32_t ReadShared(const uint32_t* at) {
   return *static_cast<const volatile uint32_t*>(at);
 }
 
+// Each operation is rounded: never a multiplication and a sum at once.
+VS_ON_DEVICE float AddFloats(float a, float b) { return __fadd_rn(a, b); }
+VS_ON_DEVICE float MultiplyFloats(float a, float b) { return __fmul_rn(a, b); }
+VS_ON_DEVICE float DivideFloats(float a, float b) { return __fdiv_rn(a, b); }
+
 VS_ON_DEVICE int CountBits(uint32_t v) { return __popc(v); }
 VS_ON_DEVICE uint32_t BytePermute(uint32_t a, uint32_t b, uint32_t selector) {
   return __byte_perm(a, b, selector);

@@ -74,7 +74,8 @@ class Lane {
  public:
   Lane(int device, const Pair& pair, const SgmSettings& settings) : pair_(pair) {
     executor_ = gpu::MakeCudaExecutor(device, {}).value();
-    const Status prepared = executor_->Prepare(settings, pair.left.width(), pair.left.height());
+    const Status prepared =
+        executor_->Prepare({.settings = settings}, pair.left.width(), pair.left.height());
     if (!prepared.ok()) throw std::runtime_error(prepared.ToString());
     for (int k = 0; k < kWarmFrames; ++k) Frame();
   }
@@ -91,7 +92,8 @@ class Lane {
 void AddFloors(const gpu::DeviceInfo& device, const SgmSettings& settings, const Pair& pair,
                Figures* figures) {
   const gpu::Frame frame =
-      gpu::FrameMemory(settings, pair.left.width(), pair.left.height(), nullptr).frame();
+      gpu::FrameMemory({.settings = settings}, pair.left.width(), pair.left.height(), nullptr)
+          .frame();
   const double cells = static_cast<double>(frame.Pixels()) * settings.num_disparities;
   const double bytes = 2 * cells * (1 + frame.sum_count);
   if (device.memory_bytes_per_s > 0) figures->memory_ms = 1e3 * bytes / device.memory_bytes_per_s;

@@ -54,18 +54,18 @@ class FakeExecutor final : public Executor {
   FakeExecutor(const FakeExecutor&) = delete;
   FakeExecutor& operator=(const FakeExecutor&) = delete;
 
-  Status Prepare(const SgmSettings& settings, int /*width*/, int /*height*/) override {
-    settings_ = settings;
+  Status Prepare(const StereoPlan& plan, int /*width*/, int /*height*/) override {
+    settings_ = plan.settings;
     return FakeDevices::Next(&devices_->room);
   }
-  Result<DisparityMap> Run(const GreyImage& left, const GreyImage& /*right*/,
+  Result<StereoResult> Run(const GreyImage& left, const GreyImage& /*right*/,
                            BufferPool& pool) override {
     ++devices_->frames[device_];
     VS_RETURN_IF_ERROR(FakeDevices::Next(&devices_->outcomes));
     DisparityMap map =
         MakeDisparityMap(left.width(), left.height(), DisparityOffset(settings_), pool);
     map.disparity.Fill(kOnDevice);
-    return map;
+    return StereoResult{.left = left, .disparity = map};
   }
   size_t DeviceBytes() const override { return 1234; }
   int64_t StagesNs() const override { return 0; }

@@ -37,11 +37,12 @@ class Comparison {
   std::string Of(const RandomPair& pair, const SgmSettings& settings) {
     const auto expected = matcher_->Match(pair.left, pair.right, settings, 2, pool_);
     if (!expected.has_value()) return expected.error().ToString();
-    const Status prepared = executor_->Prepare(settings, pair.left.width(), pair.left.height());
+    const Status prepared =
+        executor_->Prepare({.settings = settings}, pair.left.width(), pair.left.height());
     if (!prepared.ok()) return prepared.ToString();
-    const auto map = executor_->Run(pair.left, pair.right, pool_);
-    if (!map.has_value()) return map.error().ToString();
-    const std::string difference = MapDifference(*map, *expected);
+    const auto result = executor_->Run(pair.left, pair.right, pool_);
+    if (!result.has_value()) return result.error().ToString();
+    const std::string difference = MapDifference(result->disparity, *expected);
     if (difference.empty()) return "";
     return Str(difference, " at ", pair.left.width(), " x ", pair.left.height(), " px, ",
                Describe(settings));
@@ -125,8 +126,8 @@ TEST_F(Device, MapsOutliveTheirExecutorAndShareOneBuffer) {
   const RandomPair pair = MakeRandomPair(pool, 100, 50, random);
   auto executor = *MakeCudaExecutor(0, {});
   ASSERT_TRUE(executor->Prepare({}, 100, 50).ok());
-  const DisparityMap first = *executor->Run(pair.left, pair.right, pool);
-  const DisparityMap second = *executor->Run(pair.left, pair.right, pool);
+  const DisparityMap first = executor->Run(pair.left, pair.right, pool)->disparity;
+  const DisparityMap second = executor->Run(pair.left, pair.right, pool)->disparity;
   EXPECT_EQ(first.disparity.buffer().place, Place::kPinned);
   EXPECT_EQ(first.disparity.buffer().owner, first.reason.buffer().owner);
   EXPECT_NE(first.disparity.buffer().owner, second.disparity.buffer().owner);
@@ -141,13 +142,14 @@ TEST_F(Device, RefusesWhatItHasNoRoomForAndSaysHowMuchIsMissing) {
   Status prepared;
   while (prepared.ok() && executors.size() < 200) {
     executors.push_back(*MakeCudaExecutor(0, {}));
-    prepared = executors.back()->Prepare(large, kMaxPictureWidth, kMaxPictureHeight);
+    prepared = executors.back()->Prepare({.settings = large}, kMaxPictureWidth, kMaxPictureHeight);
   }
   EXPECT_EQ(prepared.code(), StatusCode::kResourceExhausted) << prepared.ToString();
   EXPECT_THAT(prepared.message(), HasSubstr("4096 x 3072 px with 256 disparities need "));
   EXPECT_THAT(prepared.message(), HasSubstr(" are available"));
   executors.erase(executors.begin());
-  EXPECT_TRUE(executors.back()->Prepare(large, kMaxPictureWidth, kMaxPictureHeight).ok());
+  EXPECT_TRUE(
+      executors.back()->Prepare({.settings = large}, kMaxPictureWidth, kMaxPictureHeight).ok());
 }
 
 TEST_F(Device, IsAMatcherByItsIndex) {

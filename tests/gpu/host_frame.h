@@ -17,12 +17,16 @@ namespace vs::gpu {
 class HostFrame {
  public:
   HostFrame(const SgmSettings& settings, int width, int height)
-      : bytes_(FrameMemory(settings, width, height, nullptr).Bytes()),
+      : HostFrame(StereoPlan{.settings = settings}, width, height) {}
+  // Of raw pictures of this size. Only what is kept is filled in.
+  HostFrame(const StereoPlan& plan, int raw_width, int raw_height)
+      : bytes_(FrameMemory(plan, raw_width, raw_height, nullptr).Bytes()),
         memory_(bytes_ + kAlignment) {
     std::memset(memory_.data(), 0xa5, memory_.size());
     const auto address = reinterpret_cast<uintptr_t>(memory_.data());
     const size_t skip = (kAlignment - address % kAlignment) % kAlignment;
-    frame_ = FrameMemory(settings, width, height, memory_.data() + skip).frame();
+    frame_ = FrameMemory(plan, raw_width, raw_height, memory_.data() + skip).frame();
+    FillKept(plan, frame_);
   }
 
   Frame& operator*() { return frame_; }

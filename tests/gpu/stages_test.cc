@@ -22,10 +22,10 @@ class Stages : public testing::Test {
     const int height = pair.left.height();
     const auto expected = reference_->Match(pair.left, pair.right, settings, 2, pool_);
     ASSERT_TRUE(expected.has_value()) << expected.error().ToString();
-    ASSERT_TRUE(executor_->Prepare(settings, width, height).ok());
-    const auto map = executor_->Run(pair.left, pair.right, pool_);
-    ASSERT_TRUE(map.has_value()) << map.error().ToString();
-    ASSERT_EQ(MapDifference(*map, *expected), "")
+    ASSERT_TRUE(executor_->Prepare({.settings = settings}, width, height).ok());
+    const auto result = executor_->Run(pair.left, pair.right, pool_);
+    ASSERT_TRUE(result.has_value()) << result.error().ToString();
+    ASSERT_EQ(MapDifference(result->disparity, *expected), "")
         << width << " x " << height << " px, " << Describe(settings);
   }
 
