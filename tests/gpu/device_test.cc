@@ -16,6 +16,7 @@
 #include "gpu/devices.h"
 #include "tests/engine/stereo/map_difference.h"
 #include "tests/engine/stereo/pictures.h"
+#include "tests/engine/stereo/random_rectification.h"
 #include "tests/engine/stereo/random_settings.h"
 
 namespace vs::gpu {
@@ -35,17 +36,19 @@ class Comparison {
   RandomPair Pair(int width, int height) { return MakeRandomPair(pool_, width, height, random_); }
   // Where they differ; empty if nowhere.
   std::string Of(const RandomPair& pair, const SgmSettings& settings) {
-    const auto expected = matcher_->Match(pair.left, pair.right, settings, 2, pool_);
+    return Of(pair, StereoPlan{.settings = settings});
+  }
+  std::string Of(const RandomPair& pair, const StereoPlan& plan) {
+    const auto expected = matcher_->Process(pair.left, pair.right, plan, 2, pool_);
     if (!expected.has_value()) return expected.error().ToString();
-    const Status prepared =
-        executor_->Prepare({.settings = settings}, pair.left.width(), pair.left.height());
+    const Status prepared = executor_->Prepare(plan, pair.left.width(), pair.left.height());
     if (!prepared.ok()) return prepared.ToString();
     const auto result = executor_->Run(pair.left, pair.right, pool_);
     if (!result.has_value()) return result.error().ToString();
-    const std::string difference = MapDifference(result->disparity, *expected);
+    const std::string difference = ResultDifference(*result, *expected);
     if (difference.empty()) return "";
     return Str(difference, " at ", pair.left.width(), " x ", pair.left.height(), " px, ",
-               Describe(settings));
+               Describe(plan.settings));
   }
 
  private:
@@ -68,6 +71,25 @@ TEST_F(Device, EqualsTheReferenceOnSmallRandomPictures) {
     const RandomPair pair =
         compare.Pair(16 + Below(compare.random(), 100), 16 + Below(compare.random(), 40));
     ASSERT_EQ(compare.Of(pair, MakeRandomSettings(compare.random(), 256)), "");
+  }
+}
+
+TEST_F(Device, EqualsTheProcessorFromRawPicturesToDepth) {
+  Comparison compare(8);
+  std::mt19937& random = compare.random();
+  for (int round = 0; round < 60; ++round) {
+    const RandomPair pair = compare.Pair(40 + Below(random, 600), 40 + Below(random, 300));
+    const RectificationKind kind{.interpolation = static_cast<Interpolation>(round % 3),
+                                 .exact = Below(random, 2) == 0,
+                                 .half_size = Below(random, 2) == 0,
+                                 .wild_px = Below(random, 20)};
+    const int width = 16 + Below(random, 600);
+    const StereoPlan plan{.rectification = MakeRandomRectification(
+                              pair.left, width, 16 + Below(random, 300), random, kind),
+                          .settings = MakeRandomSettings(random, 256),
+                          .depth = round % 4 != 0};
+    ASSERT_EQ(compare.Of(pair, plan), "");
+    ASSERT_EQ(compare.Of(pair, plan), "") << "the second time";
   }
 }
 

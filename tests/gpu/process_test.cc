@@ -22,10 +22,7 @@ class Process : public testing::Test {
     ASSERT_TRUE(expected.has_value()) << expected.error().ToString();
     const auto result = matcher_->Process(pair.left, pair.right, plan, 1, pool_);
     ASSERT_TRUE(result.has_value()) << result.error().ToString();
-    EXPECT_EQ(MapDifference(result->disparity, expected->disparity), "") << Describe(plan.settings);
-    EXPECT_EQ(result->disparity.geometry, expected->disparity.geometry);
-    EXPECT_EQ(DepthDifference(result->depth, expected->depth), "") << Describe(plan.settings);
-    EXPECT_EQ(RowsOf(result->left), RowsOf(expected->left));
+    EXPECT_EQ(ResultDifference(*result, *expected), "") << Describe(plan.settings);
   }
 
   BufferPool pool_;

@@ -1,14 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <random>
-#include <string>
 
-#include "engine/base/str.h"
-#include "engine/image/depth_map.h"
+#include "engine/image/image.h"
 #include "engine/image/rectification.h"
 #include "tests/engine/stereo/random_settings.h"
 
@@ -79,20 +76,6 @@ inline std::shared_ptr<const Rectification> MakeRandomRectification(
                     .cy_px = 11.25,
                     .principal_offset_px = 0.375};
   return made;
-}
-
-// The first pixel in which two maps differ in any bit, in words; empty if they are equal.
-inline std::string DepthDifference(const DepthMap& a, const DepthMap& b) {
-  if (!a.depth_m.SameSizeAs(b.depth_m) || !(a.geometry == b.geometry)) return "size or geometry";
-  for (int y = 0; y < a.depth_m.height(); ++y) {
-    for (int x = 0; x < a.depth_m.width(); ++x) {
-      const float* const one = a.depth_m.Row(y) + x;
-      const float* const other = b.depth_m.Row(y) + x;
-      if (std::memcmp(one, other, sizeof(float)) == 0) continue;
-      return Str("(", x, ", ", y, "): ", *one, " against ", *other, " m");
-    }
-  }
-  return "";
 }
 
 }  // namespace vs
