@@ -23,10 +23,13 @@ export function AlarmList({ alarms }: { alarms: Alarm[] }) {
         return (
           <li key={alarm.id}>
             <Group gap="md" wrap="nowrap" align="flex-start">
-              <StateMark
-                level={grave ? 'bad' : 'warning'}
-                label={t(grave ? 'alarmError' : 'alarmWarning')}
-              />
+              {/* As wide for all, so that the messages stand below each other. */}
+              <div style={{ flex: 'none', width: '5.5rem' }}>
+                <StateMark
+                  level={grave ? 'bad' : 'warning'}
+                  label={t(grave ? 'alarmError' : 'alarmWarning')}
+                />
+              </div>
               <div>
                 <Text size="sm" style={{ overflowWrap: 'anywhere' }}>
                   <strong>{alarm.id}</strong>: {alarm.message}

@@ -14,12 +14,12 @@ describe('yield', () => {
   it('counts shares of what was judged', () => {
     const counts = yieldOf(table([intValue(8n), double(2), double(0), double(1), double(5)]));
     expect(counts).toEqual({ total: 8, pass: 2, warn: 0, fail: 1, undefined: 5 });
-    expect(shareText(counts.pass, counts)).toBe('66.6 %');
+    expect(shareText(counts.pass, counts)).toBe('66.6\u00a0%');
   });
   it('says 100 % only when none failed', () => {
     const counts = yieldOf(table([intValue(9999n), double(9998), double(0), double(1), double(0)]));
-    expect(shareText(counts.pass, counts)).toBe('99.9 %');
-    expect(shareText(9999, counts)).toBe('100.0 %');
+    expect(shareText(counts.pass, counts)).toBe('99.9\u00a0%');
+    expect(shareText(9999, counts)).toBe('100.0\u00a0%');
   });
   it('has no shares when nothing was judged', () => {
     expect(shareText(0, yieldOf(undefined))).toBe('');

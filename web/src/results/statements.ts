@@ -1,6 +1,7 @@
 // The SQL that this page asks for: the tables are those of server/results/result_schema.h. What a
 // user typed travels as an argument, never inside the text.
 import type { Table } from '../gen/visionserver/v1/value_pb';
+import { formatNumber } from '../shell/format';
 import type { Condition } from './filter';
 import { stringValue, toBigint, toNumber, toText, type ValueInit } from './values';
 
@@ -54,7 +55,7 @@ export function yieldOf(table: Table | undefined): Yield {
 // "98.2 %": of the judged results. Rounded down, so that 100 % means all. Empty without any.
 export function shareText(count: number, counts: Yield): string {
   const judged = counts.total - counts.undefined;
-  return judged === 0 ? '' : `${(Math.floor((count / judged) * 1000) / 10).toFixed(1)} %`;
+  return judged === 0 ? '' : `${formatNumber(Math.floor((count / judged) * 1000) / 10, 1)}\u00a0%`;
 }
 
 const kBuckets = 500;

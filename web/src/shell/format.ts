@@ -12,7 +12,7 @@ export function formatNumber(value: number | bigint, digits = 0): string {
   }).format(value);
 }
 
-/** "12.3 GB", in powers of ten as disks are sold. */
+/** "12.3 GB", in powers of ten as disks are sold; never broken before the unit. */
 export function formatBytes(bytes: bigint | number): string {
   const units = ['B', 'kB', 'MB', 'GB', 'TB', 'PB'];
   let value = Number(bytes);
@@ -21,7 +21,7 @@ export function formatBytes(bytes: bigint | number): string {
     value /= 1000;
     unit += 1;
   }
-  return `${formatNumber(value, unit > 0 ? 1 : 0)} ${units[unit]}`;
+  return `${formatNumber(value, unit > 0 ? 1 : 0)}\u00a0${units[unit]}`;
 }
 
 /** Date and time to the second, in this machine's time zone. */
