@@ -10,118 +10,10 @@
 
 #include "engine/stereo/pixel_cost.h"
 #include "gpu/frame.h"
-#include "gpu/kernels/features.h"
-#include "gpu/kernels/paths.h"
+#include "gpu/kernels/compare.h"
 #include "gpu/kernels/simt.h"
 
 namespace vs::gpu {
-
-// Cells that a thread does at a time.
-inline constexpr int kCostCells = 8;
-using CostBytes = CellBytes<kCostCells>;
-inline constexpr int kCostThreads = 256;
-
-// What a pixel is compared by.
-struct Feature {
-  uint32_t code;
-  uint32_t code_high;
-  uint32_t coarse;
-};
-
-enum class CostKind { kSad, kBirchfieldTomasi, kCensus, kAdCensus, kLongCensus, kLongAdCensus };
-
-template <CostKind kKind>
-VS_DEVICE Feature FeatureAt(const Frame& frame, int view, int pixel) {
-  constexpr bool kLong = kKind == CostKind::kLongCensus || kKind == CostKind::kLongAdCensus;
-  return {frame.code[view][pixel], kLong ? frame.code_high[view][pixel] : 0,
-          kLong ? frame.coarse[view][pixel] : 0U};
-}
-
-VS_DEVICE int Excess(int a, int b) { return Greater(a - b, 0); }
-VS_DEVICE int ByteOf(uint32_t word, int k) { return static_cast<int>((word >> (8 * k)) & 0xff); }
-
-// C of engine/stereo/pixel_cost.h.
-template <CostKind kKind>
-VS_DEVICE int CostOf(const Feature& l, const Feature& r, const SgmSettings& settings) {
-  if constexpr (kKind == CostKind::kSad) {
-    return Lesser(Distance(ByteOf(l.code, 0), ByteOf(r.code, 0)), settings.grey_limit);
-  } else if constexpr (kKind == CostKind::kBirchfieldTomasi) {
-    const int a = Greater(Excess(ByteOf(l.code, 0), ByteOf(r.code, 2)),
-                          Excess(ByteOf(r.code, 1), ByteOf(l.code, 0)));
-    const int b = Greater(Excess(ByteOf(r.code, 0), ByteOf(l.code, 2)),
-                          Excess(ByteOf(l.code, 1), ByteOf(r.code, 0)));
-    return Lesser(Lesser(a, b), settings.grey_limit);
-  } else if constexpr (kKind == CostKind::kCensus || kKind == CostKind::kAdCensus) {
-    const int distance = CountBits((l.code ^ r.code) & 0x00ffffff);
-    if constexpr (kKind == CostKind::kCensus) return distance;
-    return distance + Lesser(Distance(ByteOf(l.code, 3), ByteOf(r.code, 3)), settings.ad_limit);
-  } else {
-    const int distance =
-        (CountBits(l.code ^ r.code) + CountBits(l.code_high ^ r.code_high) + 1) >> 1;
-    if constexpr (kKind == CostKind::kLongCensus) return distance;
-    const int step = Distance(static_cast<int>(l.coarse), static_cast<int>(r.coarse));
-    return distance + Lesser(step, settings.ad_limit);
-  }
-}
-
-// Puts `outside` into the cells of pixel column x, from index `first` on, whose counterpart is not
-// in the right picture, and 255 into those beyond the range.
-VS_DEVICE void ResetCells(const Frame& frame, int x, int first, int outside, CostBytes* cells) {
-  for (int k = 0; k < kCostCells; ++k) {
-    const int i = first + k;
-    const int counterpart = x - frame.settings.min_disparity - i;
-    const bool beyond = i >= frame.settings.num_disparities;
-    if (!beyond && counterpart >= 0 && counterpart < frame.width) continue;
-    const auto value = static_cast<uint32_t>(beyond ? 255 : outside);
-    uint32_t& word = cells->word[k / 4];
-    word = (word & ~(0xffU << (8 * (k % 4)))) | value << (8 * (k % 4));
-  }
-}
-
-VS_DEVICE CostBytes LoadCost(const Frame& frame, const uint8_t* volume, int x, int y, int first) {
-  const size_t pixel = static_cast<size_t>(y) * frame.width + x;
-  return *reinterpret_cast<const CostBytes*>(volume + pixel * frame.pitch + first);
-}
-VS_DEVICE void StoreCost(const CostBytes& cells, const Frame& frame, int x, int y, int first,
-                         uint8_t* volume) {
-  const size_t pixel = static_cast<size_t>(y) * frame.width + x;
-  *reinterpret_cast<CostBytes*>(volume + pixel * frame.pitch + first) = cells;
-}
-
-// A block does kTile pixels of a row; the right pixels that they meet wait in shared memory.
-inline constexpr int kTile = 32;
-
-template <CostKind kKind>
-VS_KERNEL ComparePixels(const Frame frame, int outside, uint8_t* costs) {
-  // In an order in which the lanes of a warp, 8 pixels apart, meet different banks.
-  constexpr int kColumns = (kTile + 256) / kCostCells + 1;
-  VS_SHARED Feature right[kCostCells * kColumns];
-  const auto slot = [](int k) { return k % kCostCells * kColumns + k / kCostCells; };
-  const int y = BlockY();
-  const int x0 = BlockX() * kTile;
-  // Right pixel of slot k.
-  const int first_right = x0 - frame.settings.min_disparity - (frame.pitch - 1);
-  for (int k = ThreadInBlock(); k < kTile + frame.pitch; k += ThreadsInBlock()) {
-    const int x = Clamp(first_right + k, 0, frame.width - 1);
-    right[slot(k)] = FeatureAt<kKind>(frame, kRight, y * frame.width + x);
-  }
-  SyncBlock();
-  const int groups = frame.pitch / kCostCells;
-  for (int item = ThreadInBlock(); item < kTile * groups; item += ThreadsInBlock()) {
-    const int x = x0 + item / groups;
-    const int first = item % groups * kCostCells;
-    if (x >= frame.width) break;
-    const Feature left = FeatureAt<kKind>(frame, kLeft, y * frame.width + x);
-    CostBytes cells = {};
-    for (int k = 0; k < kCostCells; ++k) {
-      const Feature& other = right[slot(x - x0 + frame.pitch - 1 - (first + k))];
-      const auto cost = static_cast<uint32_t>(CostOf<kKind>(left, other, frame.settings));
-      cells.word[k / 4] |= cost << (8 * (k % 4));
-    }
-    ResetCells(frame, x, first, outside, &cells);
-    StoreCost(cells, frame, x, y, first, costs);
-  }
-}
 
 // Sums of kCostCells cells, as pairs.
 struct CostSums {
@@ -235,26 +127,6 @@ VS_KERNEL SmoothCosts(const Frame frame, int outside, const uint8_t* from, uint8
     above = here;
     here = below;
   }
-}
-
-template <class Launch>
-void Compare(Launch& launch, const Frame& frame, int outside, uint8_t* costs) {
-  const SgmSettings& settings = frame.settings;
-  const Grid grid{(frame.width + kTile - 1) / kTile, frame.height};
-  const auto compare = [&](auto kernel) {
-    launch(kernel, grid, kCostThreads, frame, outside, costs);
-  };
-  if (settings.cost == MatchCost::kSad) return compare(&ComparePixels<CostKind::kSad>);
-  if (settings.cost == MatchCost::kBirchfieldTomasi) {
-    return compare(&ComparePixels<CostKind::kBirchfieldTomasi>);
-  }
-  const bool ad = settings.cost == MatchCost::kAdCensus;
-  if (IsLongCode(settings.census)) {
-    return ad ? compare(&ComparePixels<CostKind::kLongAdCensus>)
-              : compare(&ComparePixels<CostKind::kLongCensus>);
-  }
-  return ad ? compare(&ComparePixels<CostKind::kAdCensus>)
-            : compare(&ComparePixels<CostKind::kCensus>);
 }
 
 // code -> costs. Volumes are written in turn so that the last step ends in `costs`.

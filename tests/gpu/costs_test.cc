@@ -90,6 +90,32 @@ TEST_F(Costs, ReachBeyondThePicture) {
   }
 }
 
+TEST_F(Costs, AreTheReferencesInRowsOfSeveralBlocks) {
+  const RandomPair pair = MakeRandomPair(pool_, 301, 16, random_);
+  for (const int range : {1, 8, 20, 129, 192, 256}) {
+    for (const int first : {-40, 0, 70}) {
+      ExpectEqual(pair, {.min_disparity = first, .num_disparities = range}, 6);
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+TEST(CostOf, ComparesFeatures) {
+  const SgmSettings settings{.ad_limit = 4, .grey_limit = 63};
+  const Feature l{.code = 0x0a05000f, .code_high = 3, .coarse = 10};
+  const Feature r{.code = 0x11050001, .code_high = 0, .coarse = 12};
+  EXPECT_EQ(CostOf<CostKind::kCensus>(l, r, settings), 3);
+  EXPECT_EQ(CostOf<CostKind::kAdCensus>(l, r, settings), 3 + 4);
+  EXPECT_EQ(CostOf<CostKind::kSad>(l, r, settings), 14);
+  // 4 bits of the high byte differ, too, and 2 of the other half: 9, halved.
+  EXPECT_EQ(CostOf<CostKind::kLongCensus>(l, r, settings), 5);
+  EXPECT_EQ(CostOf<CostKind::kLongAdCensus>(l, r, settings), 5 + 2);
+  // From 60 to 45..55 it is 5, from 50 to 57..61 it is 7.
+  const Feature a{.code = 50 | 45 << 8 | 55 << 16, .code_high = 0, .coarse = 0};
+  const Feature b{.code = 60 | 57 << 8 | 61 << 16, .code_high = 0, .coarse = 0};
+  EXPECT_EQ(CostOf<CostKind::kBirchfieldTomasi>(a, b, settings), 5);
+}
+
 TEST(AverageBytes, RoundsUp) {
   EXPECT_EQ(AverageBytes(0x00ff01fe, 0x01ff02ff), 0x01ff02ffU);
   EXPECT_EQ(AverageBytes(0x00000000, 0xff030201), 0x80020101U);
