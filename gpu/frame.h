@@ -59,7 +59,7 @@ struct Frame {
   uint8_t* input[2] = {};        // the rectified pair
   GreyCounts* counts = nullptr;  // cleared before each frame
   Conditioning* conditioning = nullptr;
-  uint8_t* across[2] = {};  // half way through the blur
+  uint8_t* across[2] = {};  // horizontal gradients, if these are compared
   uint8_t* grey[2] = {};    // conditioned: what costs, edges and reasons see
   // What pixels are compared by (pixel_cost.h), by view:
   //   24 bits of census: the code in the low bytes, J in the high one

@@ -16,38 +16,34 @@ inline constexpr int kNoiseBin = 4;
 inline constexpr int kQuantiles = 19;
 inline constexpr int kCountThreads = 256;
 
-// Mask response of the block of 8 x 8 pixels at (x0, y0); negative if its greys reach an end of the
-// scale.
-VS_DEVICE int NoiseResponse(const uint8_t* picture, int width, int x0, int y0) {
-  int sum = 0;
-  int low = 255;
-  int high = 0;
-  for (int y = y0; y < y0 + kNoiseBlock; ++y) {
-    const uint8_t* const row = picture + y * width;
-    const uint8_t* const above = row - width;
-    const uint8_t* const below = row + width;
-    for (int x = x0; x < x0 + kNoiseBlock; ++x) {
-      const int corners = above[x - 1] + above[x + 1] + below[x - 1] + below[x + 1];
-      const int sides = above[x] + below[x] + row[x - 1] + row[x + 1];
-      const int response = corners - 2 * sides + 4 * row[x];
-      sum += response < 0 ? -response : response;
-      low = Lesser<int>(low, row[x]);
-      high = Greater<int>(high, row[x]);
-    }
-  }
-  return low < 6 || high > 249 ? -1 : sum;
+// Size of the answer of the mask (1 -2 1, -2 4 -2, 1 -2 1) at a pixel.
+VS_DEVICE int MaskResponse(const uint8_t* at, int width) {
+  const auto across = [](const uint8_t* p) { return p[-1] - 2 * p[0] + p[1]; };
+  const int response = across(at - width) - 2 * across(at) + across(at + width);
+  return response < 0 ? -response : response;
 }
 
-// A thread for each of `blocks` blocks that are looked at, `step` apart; block y is the view.
+// A warp for each of `blocks` blocks of 8 x 8 pixels that are looked at, `step` apart, for there
+// are too few of them to keep a device busy with a thread each; block y is the view.
 VS_KERNEL CountNoise(const Frame frame, int columns, int blocks, int step) {
   const int view = BlockY();
-  const int which = ThreadInGrid();
-  if (which >= blocks) return;
+  const int which = BlockX() * WarpsInBlock() + WarpInBlock();
+  if (which >= blocks) return;  // the whole warp
   const int k = which * step;
-  const int response = NoiseResponse(frame.input[view], frame.width, 1 + k % columns * kNoiseBlock,
-                                     1 + k / columns * kNoiseBlock);
-  if (response < 0) return;
-  const int bin = Lesser(response / kNoiseBin, GreyCounts::kNoiseBins - 1);
+  const int x = 1 + k % columns * kNoiseBlock + Lane() % kNoiseBlock;
+  const int y = 1 + k / columns * kNoiseBlock + Lane() / kNoiseBlock;
+  uint32_t response = 0;
+  uint32_t counts = 1;  // unless greys reach an end of the scale
+  constexpr int kRowsOfWarp = kWarpSize / kNoiseBlock;
+  for (int row = y; row < y + kNoiseBlock; row += kRowsOfWarp) {
+    const uint8_t* const at = frame.input[view] + row * frame.width + x;
+    response += static_cast<uint32_t>(MaskResponse(at, frame.width));
+    if (*at < 6 || *at > 249) counts = 0;
+  }
+  response = WarpSum(response);
+  counts = WarpMin(counts);
+  if (Lane() != 0 || counts == 0) return;
+  const int bin = Lesser(static_cast<int>(response) / kNoiseBin, GreyCounts::kNoiseBins - 1);
   AtomicAdd(&frame.counts->noise[view][bin], 1);
 }
 
@@ -57,15 +53,22 @@ struct CommonColumns {
   int end[2];
 };
 
+// Rows that a block counts before it tells the others: each time it adds to up to 256 counters
+// that all blocks share.
+inline constexpr int kCountedRows = 4;
+
 VS_KERNEL CountGreys(const Frame frame, const CommonColumns columns) {
   VS_SHARED uint32_t counts[256];
   const int view = BlockY();
   for (int g = ThreadInBlock(); g < 256; g += ThreadsInBlock()) counts[g] = 0;
   SyncBlock();
-  const int y = BlockX();
-  for (int x = columns.begin[view] + ThreadInBlock(); x < columns.end[view];
-       x += ThreadsInBlock()) {
-    AtomicAdd(&counts[frame.input[view][y * frame.width + x]], 1);
+  const int end = Lesser((BlockX() + 1) * kCountedRows, frame.height);
+  for (int y = BlockX() * kCountedRows; y < end; ++y) {
+    const uint8_t* const row = frame.input[view] + y * frame.width;
+    for (int x = columns.begin[view] + ThreadInBlock(); x < columns.end[view];
+         x += ThreadsInBlock()) {
+      AtomicAdd(&counts[row[x]], 1);
+    }
   }
   SyncBlock();
   for (int g = ThreadInBlock(); g < 256; g += ThreadsInBlock()) {
@@ -183,32 +186,24 @@ VS_DEVICE uint8_t Blend(const Conditioning& c, int before, int centre, int after
 
 inline constexpr int kPixelThreads = 128;
 
-// Block y: a row of the left view, then of the right one.
-VS_KERNEL BlurAcross(const Frame frame) {
+// Block y: a row of the left view, then of the right one. Across in three rows, then down.
+VS_KERNEL MapAndBlur(const Frame frame) {
   const int x = ThreadInGrid();
   const int view = BlockY() / frame.height;
   const int y = BlockY() % frame.height;
   if (x >= frame.width) return;
-  const uint8_t* const row = frame.input[view] + y * frame.width;
   const Conditioning& c = *frame.conditioning;
-  const auto at = [&](int column) -> int {
-    const uint8_t grey = row[Clamp(column, 0, frame.width - 1)];
+  const auto at = [&](int column, int row) -> int {
+    const uint8_t grey = frame.input[view][row * frame.width + Clamp(column, 0, frame.width - 1)];
     return view == kRight ? c.right_greys[grey] : grey;
   };
-  frame.across[view][y * frame.width + x] = Blend(c, at(x - 1), at(x), at(x + 1));
-}
-
-VS_KERNEL BlurDown(const Frame frame) {
-  const int x = ThreadInGrid();
-  const int view = BlockY() / frame.height;
-  const int y = BlockY() % frame.height;
-  if (x >= frame.width) return;
-  const uint8_t* const across = frame.across[view];
-  const int above = Greater(y - 1, 0);
-  const int below = Lesser(y + 1, frame.height - 1);
-  frame.grey[view][y * frame.width + x] =
-      Blend(*frame.conditioning, across[above * frame.width + x], across[y * frame.width + x],
-            across[below * frame.width + x]);
+  const auto across = [&](int row) {
+    const int inside = Clamp(row, 0, frame.height - 1);
+    return Blend(c, at(x - 1, inside), at(x, inside), at(x + 1, inside));
+  };
+  frame.grey[view][y * frame.width + x] = c.side == 0
+                                              ? static_cast<uint8_t>(at(x, y))
+                                              : Blend(c, across(y - 1), across(y), across(y + 1));
 }
 
 VS_KERNEL CopyGreys(const Frame frame) {
@@ -239,19 +234,20 @@ void Condition(Launch& launch, const Frame& frame) {
   }
   const CommonColumns columns = ColumnsInCommon(frame);
   if (settings.match_gain) {
-    launch(&CountGreys, Grid{frame.height, 2}, kCountThreads, frame, columns);
+    const int blocks = (frame.height + kCountedRows - 1) / kCountedRows;
+    launch(&CountGreys, Grid{blocks, 2}, kCountThreads, frame, columns);
   }
   const int across = (frame.width - 2) / kNoiseBlock;
   const int all = across * ((frame.height - 2) / kNoiseBlock);
   if (settings.pre_blur == PreBlur::kAutomatic && all > 0) {
     const int step = Greater(all / 1024, 1);
     const int blocks = (all + step - 1) / step;
-    launch(&CountNoise, Grid{(blocks + kPixelThreads - 1) / kPixelThreads, 2}, kPixelThreads, frame,
-           across, blocks, step);
+    constexpr int kWarps = kPixelThreads / kWarpSize;
+    launch(&CountNoise, Grid{(blocks + kWarps - 1) / kWarps, 2}, kPixelThreads, frame, across,
+           blocks, step);
   }
   launch(&Decide, Grid{}, kCountThreads, frame, columns);
-  launch(&BlurAcross, PixelsOfBothViews(frame), kPixelThreads, frame);
-  launch(&BlurDown, PixelsOfBothViews(frame), kPixelThreads, frame);
+  launch(&MapAndBlur, PixelsOfBothViews(frame), kPixelThreads, frame);
 }
 
 }  // namespace vs::gpu

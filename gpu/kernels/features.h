@@ -20,7 +20,7 @@ struct Endless {
   }
 };
 
-// Horizontal gradients in place of greys (padded_picture.h), into `across`, which is free by now.
+// Horizontal gradients in place of greys (padded_picture.h).
 VS_KERNEL FilterSobel(const Frame frame) {
   const int x = ThreadInGrid();
   const int view = BlockY() / frame.height;

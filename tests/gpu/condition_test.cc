@@ -90,6 +90,22 @@ TEST_F(ConditionStage, BlursWhatIsNoisy) {
   }
 }
 
+TEST_F(ConditionStage, LooksAtSomeBlocksOfALargePicture) {
+  // 51 x 42 blocks, of which every second counts.
+  const GreyImage flat = Changed(RandomGreys(410, 340, 1, pool_), [](int) { return 120; });
+  const auto noisy = [&](int grey) { return grey + Below(random_, 13) - 6; };
+  EXPECT_TRUE(ExpectEqual(Changed(flat, noisy), Changed(flat, noisy), {}));
+}
+
+TEST(MaskResponse, IsZeroOnSlopesAndGreatOnDots) {
+  const uint8_t slope[] = {10, 20, 30, 40, 50, 60, 70, 80, 90};
+  EXPECT_EQ(MaskResponse(slope + 4, 3), 0);
+  const uint8_t dot[] = {0, 0, 0, 0, 9, 0, 0, 0, 0};
+  EXPECT_EQ(MaskResponse(dot + 4, 3), 36);
+  const uint8_t side[] = {0, 0, 0, 9, 0, 0, 0, 0, 0};
+  EXPECT_EQ(MaskResponse(side + 4, 3), 18);
+}
+
 TEST_F(ConditionStage, CopesWithPicturesThatTellNothing) {
   for (const int grey : {0, 128, 255}) {
     const GreyImage flat = Changed(RandomGreys(40, 20, 1, pool_), [&](int) { return grey; });
