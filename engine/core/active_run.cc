@@ -237,8 +237,9 @@ void ActiveRun::Count(int node, const BlockOutcome& outcome, FrameState* state) 
   }
   counters.runs.fetch_add(1, std::memory_order_relaxed);
   counters.durations.Add(outcome.duration_ns);
-  counters.last_error = outcome.status.message();
-  if (outcome.kind == BlockOutcome::Kind::kGood) return;
+  counters.failing = outcome.kind != BlockOutcome::Kind::kGood;
+  if (!counters.failing) return;
+  counters.last_failure = outcome.status.message();
   counters.errors.fetch_add(1, std::memory_order_relaxed);
   last_error_ = Str(info_->block_ids[node], ": ", outcome.status.message());
   state->failed = true;
@@ -311,7 +312,8 @@ RunStats ActiveRun::Stats() const {
     stats.frames_in_flight = in_flight_;
     stats.over_budget = frames_over_budget_;
     for (size_t i = 0; i < counters_.size(); ++i) {
-      stats.blocks[i].last_error = counters_[i].last_error;
+      stats.blocks[i].last_failure = counters_[i].last_failure;
+      if (counters_[i].failing) stats.blocks[i].last_error = counters_[i].last_failure;
     }
   }
   for (size_t i = 0; i < counters_.size(); ++i) {

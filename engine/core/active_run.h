@@ -56,7 +56,8 @@ class ActiveRun final : public Run, public std::enable_shared_from_this<ActiveRu
     std::atomic<uint64_t> skipped = 0;
     std::atomic<uint64_t> errors = 0;
     RecentTimes durations;
-    std::string last_error;  // guarded by queue_.mutex
+    bool failing = false;      // the last run failed; guarded by queue_.mutex
+    std::string last_failure;  // guarded by queue_.mutex
   };
   struct FrameState {
     std::unique_ptr<FrameInFlight> frame;

@@ -22,11 +22,12 @@ std::string_view RunStateName(RunState state);
 struct BlockStats {
   std::string id;
   uint64_t runs = 0;
-  uint64_t skipped = 0;    // frames in which a required input had no value
-  uint64_t errors = 0;     // of the runs
-  std::string last_error;  // empty when the last run was good and, of a source, all is well
-  int64_t last_ns = 0;     // duration of the last run
-  int64_t p50_ns = 0;      // over the last 256 runs
+  uint64_t skipped = 0;      // frames in which a required input had no value
+  uint64_t errors = 0;       // of the runs
+  std::string last_error;    // empty when the last run was good and, of a source, all is well
+  std::string last_failure;  // of the last run that failed, also when later ones were good
+  int64_t last_ns = 0;       // duration of the last run
+  int64_t p50_ns = 0;        // over the last 256 runs
   int64_t p99_ns = 0;
   std::vector<Reading> readings;  // of a source: see SourceReport
 };

@@ -58,6 +58,7 @@ pb::BlockState ToProto(const BlockStats& stats) {
   state.set_p50_us(ToUs(stats.p50_ns));
   state.set_p99_us(ToUs(stats.p99_ns));
   state.set_last_error(stats.last_error);
+  state.set_last_failure(stats.last_failure);
   for (const Reading& reading : stats.readings) {
     pb::Reading* added = state.add_readings();
     added->set_name(reading.name);

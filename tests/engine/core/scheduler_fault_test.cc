@@ -63,6 +63,9 @@ TEST_F(SchedulerFaultTest, AnErrorSkipsWhatIsBehindItForThisFrame) {
     counts.push_back(block.id + " " + std::to_string(block.runs) + " " +
                      std::to_string(block.skipped) + " " + std::to_string(block.errors));
   }
+  EXPECT_EQ(stats.blocks[1].last_error, "") << "its last run was good";
+  EXPECT_EQ(stats.blocks[1].last_failure, "too dark");
+  EXPECT_EQ(stats.blocks[2].last_failure, "");
   // id, runs, skipped, errors; "some" needs only one of its inputs.
   EXPECT_THAT(counts, ElementsAre("source 4 0 0", "bad 4 0 1", "behind 3 1 0", "beside 4 0 0",
                                   "some 4 0 0"));

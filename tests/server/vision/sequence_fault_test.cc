@@ -126,6 +126,22 @@ TEST_F(SequenceFault, AFailingSequenceIsUnhealthyAndRaisesAnAlarm) {
   EXPECT_TRUE(WaitUntil([&] { return !alarmed(); }));
 }
 
+TEST_F(SequenceFault, AFailureIsToldAlsoAfterGoodRuns) {
+  ProbeOf("step").run = [](const StepRun& run) {
+    return run.frame.number == 2 ? Unavailable("the lamp is dark") : Status();
+  };
+  Create(CountSpec());
+  ASSERT_TRUE(Start("count").ok());
+  ASSERT_TRUE(WaitUntil([&] { return State("count").frames() >= 4; }));
+  const pb::SequenceState state = State("count");
+  for (const pb::BlockState& block : state.blocks()) {
+    const bool failed = block.block() == "step";
+    EXPECT_EQ(failed ? 1u : 0u, block.failures()) << block.block();
+    EXPECT_EQ(failed ? "the lamp is dark" : "", block.last_failure()) << block.block();
+    EXPECT_EQ("", block.last_error()) << block.block();
+  }
+}
+
 TEST_F(SequenceFault, AnExceptionEndsItsOwnSequenceOnly) {
   ProbeOf("step").run = [](const StepRun&) -> Status { throw std::runtime_error("bad luck"); };
   Create(CountSpec());

@@ -66,7 +66,13 @@ export const en = {
     toolbar: 'How the point cloud is shown',
     label: 'Point cloud of the newest map',
     coloring: 'What the colours are',
-    by: { depth: 'Colour: depth', height: 'Colour: height', picture: 'Colour: picture' },
+    by: {
+      depth: 'Colour: depth',
+      height: 'Colour: height (up in the picture)',
+      picture: 'Colour: picture',
+    },
+    heightHelp:
+      'Upwards in the picture is high: measured against the y axis of the left camera, not by gravity',
     density: 'How many points',
     all: 'All points',
     every: '1 in {{count}} points',
@@ -80,6 +86,9 @@ export const en = {
     label: 'Blocks of the sequence and their connections',
     preview: 'Output {{output}}, live',
     time: 'Time of one run, the middle one of the last 256',
+    failures_one: '{{number}} failure since the start',
+    failures_other: '{{number}} failures since the start',
+    worksAgain: 'Works again. Last failure: {{reason}}',
   },
   colorMap: { turbo: 'Turbo', viridis: 'Viridis', grey: 'Grey', hue: 'Hue' },
   inspector: {
@@ -176,7 +185,13 @@ export const de: typeof en = {
     toolbar: 'Darstellung der Punktwolke',
     label: 'Punktwolke der neuesten Karte',
     coloring: 'Was die Farben sind',
-    by: { depth: 'Farbe: Tiefe', height: 'Farbe: Höhe', picture: 'Farbe: Bild' },
+    by: {
+      depth: 'Farbe: Tiefe',
+      height: 'Farbe: Höhe (oben im Bild)',
+      picture: 'Farbe: Bild',
+    },
+    heightHelp:
+      'Oben im Bild ist hoch: gemessen gegen die y-Achse der linken Kamera, nicht nach der Schwerkraft',
     density: 'Wie viele Punkte',
     all: 'Alle Punkte',
     every: '1 von {{count}} Punkten',
@@ -190,6 +205,9 @@ export const de: typeof en = {
     label: 'Blöcke der Sequenz und ihre Verbindungen',
     preview: 'Ausgang {{output}}, live',
     time: 'Dauer eines Laufs, der mittlere der letzten 256',
+    failures_one: '{{number}} Fehler seit dem Start',
+    failures_other: '{{number}} Fehler seit dem Start',
+    worksAgain: 'Läuft wieder. Letzter Fehler: {{reason}}',
   },
   colorMap: { turbo: 'Turbo', viridis: 'Viridis', grey: 'Grau', hue: 'Farbton' },
   inspector: {

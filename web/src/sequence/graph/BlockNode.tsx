@@ -3,6 +3,7 @@ import { createContext, memo, useContext } from 'react';
 import { useTranslation } from 'react-i18next';
 import type { BlockState, PortInfo } from '../../gen/visionserver/v1/sequence_pb';
 import { number } from '../view/format';
+import { FailureBadge } from './FailureBadge';
 import { type GraphBlock, kHeadPx, kPortPx, portColor } from './graph';
 import classes from './graph.module.css';
 import { Preview } from './Preview';
@@ -24,6 +25,7 @@ export const BlockNode = memo(function BlockNode({ data: { block } }: NodeProps<
           <strong>{block.id}</strong>
           <span>{block.type}</span>
         </div>
+        {state && <FailureBadge {...state} />}
         {state && state.runs > 0n && (
           <span className={classes.time} title={t('graph.time')} data-testid={`time-${block.id}`}>
             {number(state.p50Us / 1000, state.p50Us < 9950 ? 1 : 0, i18n.language)} ms

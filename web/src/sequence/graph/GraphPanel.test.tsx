@@ -3,8 +3,8 @@ import { create } from '@bufbuild/protobuf';
 import { MantineProvider } from '@mantine/core';
 import { act, fireEvent, render, screen } from '@testing-library/react';
 import userEvent from '@testing-library/user-event';
-import { beforeEach, describe, expect, it } from 'vitest';
-import { SequenceSpecSchema } from '../../gen/visionserver/v1/sequence_pb';
+import { beforeEach, describe, expect, it, vi } from 'vitest';
+import { SequenceSpecSchema, SequenceStateSchema } from '../../gen/visionserver/v1/sequence_pb';
 import GraphPanel from './GraphPanel';
 
 const spec = create(SequenceSpecSchema, {
@@ -12,6 +12,49 @@ const spec = create(SequenceSpecSchema, {
     { id: 'left', type: 'Camera', x: 0, y: 0 },
     { id: 'check', type: 'Check', x: 400, y: 0 },
   ],
+});
+
+function panel(lastError?: string) {
+  const state =
+    lastError === undefined
+      ? undefined
+      : create(SequenceStateSchema, {
+          blocks: [
+            { block: 'left', runs: 9000n },
+            { block: 'check', runs: 9000n, failures: 1234n, lastFailure: 'too dark', lastError },
+          ],
+        });
+  return (
+    <MantineProvider env="test">
+      <GraphPanel spec={spec} blockTypes={[]} outputs={[]} state={state} onChoose={() => {}} />
+    </MantineProvider>
+  );
+}
+
+describe('The failures of a block', () => {
+  const badge = () => screen.getByTestId('failures-check');
+
+  it('are counted, also while it works again, and of no block that never failed', () => {
+    const { rerender } = render(panel('too dark'));
+    expect(badge().textContent).toBe('✕ 1.2K');
+    expect(badge().dataset.works).toBe('false');
+    rerender(panel(''));
+    expect(badge().dataset.works).toBe('true');
+    expect(screen.queryByTestId('failures-left')).toBeNull();
+    expect(screen.getByRole('button', { name: '1.2K failures since the start' })).toBeTruthy();
+  });
+
+  it('tell the reason of the last one by focus and by pointing', async () => {
+    render(panel(''));
+    const reason = 'Works again. Last failure: too dark';
+    expect(screen.queryByText(reason)).toBeNull();
+    act(() => badge().focus());
+    expect((await screen.findByRole('tooltip')).textContent).toBe(reason);
+    act(() => badge().blur());
+    await vi.waitFor(() => expect(screen.queryByRole('tooltip')).toBeNull());
+    await userEvent.hover(badge());
+    expect((await screen.findByRole('tooltip')).textContent).toBe(reason);
+  });
 });
 
 describe('A block of the graph', () => {
