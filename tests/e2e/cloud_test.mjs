@@ -54,6 +54,11 @@ async function look() {
 /** The part of two views that differs. */
 const difference = (a, b) => a.pixels.filter((pixel, i) => !same(pixel, b.pixels[i])).length / a.pixels.length;
 
+const colors = {
+  depth: 'Colour: depth',
+  height: 'Colour: height (up in the picture)',
+  picture: 'Colour: picture',
+};
 const choose = (what, label) => page.getByRole('combobox', { name: what }).selectOption({ label });
 const setPointSize = (size) => page.getByRole('slider', { name: 'Size', exact: true }).fill(String(size));
 const resetView = () => page.getByRole('button', { name: 'Reset view' }).click();
@@ -88,8 +93,8 @@ test('points are drawn; larger ones cover more; dragging turns them and a button
 test('colours by depth, height and picture differ, and those of the picture are grey', async () => {
   const isGrey = ([red, green, blue]) => red === green && green === blue;
   const views = {};
-  for (const by of ['depth', 'height', 'picture']) {
-    await choose('What the colours are', `Colour: ${by}`);
+  for (const by of Object.keys(colors)) {
+    await choose('What the colours are', colors[by]);
     views[by] = await look();
     // The axes have colours of their own.
     const grey = views[by].drawn.filter(isGrey).length / views[by].drawn.length;
@@ -100,7 +105,11 @@ test('colours by depth, height and picture differ, and those of the picture are 
   assert.ok(difference(views.depth, views.height) > 0.05);
   assert.ok(difference(views.depth, views.picture) > 0.05);
   assert.ok(difference(views.height, views.picture) > 0.05);
-  await choose('What the colours are', 'Colour: depth');
+  // Which way heights go is said where they are chosen.
+  const choice = page.getByRole('combobox', { name: 'What the colours are' });
+  await choose('What the colours are', colors.height);
+  assert.match(await choice.getAttribute('title'), /y axis of the left camera/);
+  await choose('What the colours are', colors.depth);
 });
 
 test('the range of the colours is set beside the cloud, and the bar follows', async () => {
@@ -114,9 +123,9 @@ test('the range of the colours is set beside the cloud, and the bar follows', as
   await far.fill(String(far_m));
   await far.press('Enter');
   // Heights have no metres of depth.
-  await choose('What the colours are', 'Colour: height');
+  await choose('What the colours are', colors.height);
   await bar.waitFor({ state: 'detached' });
-  await choose('What the colours are', 'Colour: depth');
+  await choose('What the colours are', colors.depth);
   await bar.waitFor();
 });
 

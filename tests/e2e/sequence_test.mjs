@@ -1,5 +1,5 @@
-// What one does on the page of a sequence: save, measure, look at the blocks, set a parameter without
-// a mouse. Held against the exact truth of a still scene and against what the server has.
+// What one does on the page of a sequence: save, measure, look at the blocks. Held against
+// the exact truth of a still scene and against what the server has.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -163,18 +163,5 @@ test('a tab never has more than one Subscribe, whatever it shows', async () => {
     assert.equal((await subscribes()).open, 1, place);
   }
   assert.equal((await subscribes()).mostAtOnce, 1);
-});
-
-test('a parameter is set with the keyboard alone', async () => {
-  const confirmed = page.getByTestId('parameter-match.num_disparities').getByRole('textbox');
-  const before = Number(await confirmed.inputValue());
-  const focused = () => page.evaluate(() => document.activeElement.getAttribute('aria-label'));
-  for (let i = 0; i < 300 && (await focused()) !== 'num_disparities'; ++i) await page.keyboard.press('Tab');
-  assert.equal(await focused(), 'num_disparities');
-  await page.keyboard.press('ArrowLeft');
-  await until('the confirmed value', async () => Number(await confirmed.inputValue()) === before - 1);
-  const paths = ['match.num_disparities'];
-  const { values } = await server.admin.parameters.getParameters({ sequence: 'still', paths });
-  assert.equal(values[0].value.kind.value, BigInt(before - 1));
   assertNoFaults(page);
 });

@@ -1,4 +1,5 @@
 import { useTranslation } from 'react-i18next';
+import { kNone } from '../shell/format';
 import classes from './page.module.css';
 import { number } from './view/format';
 import type { LiveScene } from './view/liveScene';
@@ -12,8 +13,8 @@ export function StreamFigures({ scene }: { scene: LiveScene }) {
     if (!figures) return undefined;
     const { fps, latency_ms, dropped } = figures;
     return {
-      fps: `${number(fps, 1, i18n.language)} /s`,
-      latency: latency_ms === undefined ? '–' : `${number(latency_ms, 0, i18n.language)} ms`,
+      fps: fps === undefined ? kNone : `${number(fps, 1, i18n.language)} /s`,
+      latency: latency_ms === undefined ? kNone : `${number(latency_ms, 0, i18n.language)} ms`,
       dropped: String(dropped),
     };
   });

@@ -64,6 +64,7 @@ export default function CloudPanel({ sequence, scene, measuring, setMeasuring }:
       <Group gap="sm" role="toolbar" aria-label={t('cloud.toolbar')}>
         <Choice
           label={t('cloud.coloring')}
+          help={options.coloring === 'height' ? t('cloud.heightHelp') : undefined}
           value={options.coloring}
           choices={colorings.map((value) => [value, t(`cloud.by.${value}`)])}
           onChoose={(coloring) => change({ coloring })}

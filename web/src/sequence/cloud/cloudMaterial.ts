@@ -15,6 +15,7 @@ import { type ColorMap, palette } from '../view/colorMap';
 import type { StoredRange } from '../view/colorize';
 import { fragmentShader, vertexShader } from './shader';
 
+// Height is -y of the camera's frame: up in the picture, however the camera hangs.
 export const colorings = ['depth', 'height', 'picture'] as const;
 export type Coloring = (typeof colorings)[number];
 

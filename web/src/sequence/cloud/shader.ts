@@ -13,7 +13,7 @@ uniform float scale, offset;   // stored * scale + offset is the disparity in px
 uniform float focal, baseline, principalOffset;
 uniform vec2 center;           // principal point, px
 uniform vec2 nearFar;          // stored values at the ends of the palette
-uniform vec2 lowHigh;          // y in m at the ends of the palette, for colours by height
+uniform vec2 lowHigh;          // y in m at the ends of the palette: by height, which is -y
 uniform int coloring;          // 0 depth, 1 height, 2 picture
 uniform int step;              // every how many pixels, both ways
 uniform float pointSize;       // px

@@ -6,7 +6,7 @@ describe('Statistics', () => {
   it('knows nothing before the first picture', () => {
     const figures = new Statistics().figures(5000);
     expect(figures).toEqual({
-      fps: 0,
+      fps: undefined,
       latency_ms: undefined,
       dropped: 0,
       age_ms: undefined,
@@ -21,6 +21,14 @@ describe('Statistics', () => {
     // Half of the window later without a picture.
     expect(statistics.figures(11_000).fps).toBe(12.5);
     expect(statistics.figures(13_000).fps).toBe(0);
+  });
+
+  it('knows no rate by one picture, and that there is none when no other follows', () => {
+    const statistics = new Statistics();
+    statistics.onDrawn(1000, 50);
+    expect(statistics.figures(1000).fps).toBeUndefined();
+    expect(statistics.figures(2900).fps).toBeUndefined();
+    expect(statistics.figures(3000).fps).toBe(0);
   });
 
   it('shows a rate soon after the beginning', () => {

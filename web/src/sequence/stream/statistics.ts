@@ -2,8 +2,8 @@ const kWindowMs = 2000;
 const kStaleAfterMs = 1000;
 
 export interface Figures {
-  /** Drawn per second, over the last two seconds. */
-  fps: number;
+  /** Drawn per second, over the last two seconds; undefined until two were drawn or that time is over. */
+  fps: number | undefined;
   /** From exposure to drawn, the middle one of the last two seconds; undefined when none was drawn. */
   latency_ms: number | undefined;
   /** Published by the sequence and not drawn, since the page was opened. */
@@ -50,13 +50,14 @@ export class Statistics {
     };
   }
 
-  private fps(now_ms: number): number {
-    if (this.since_ms === undefined || this.drawn.length === 0) return 0;
+  private fps(now_ms: number): number | undefined {
+    if (this.since_ms === undefined) return undefined;
     const watched_ms = now_ms - this.since_ms;
     // Just begun: from the distances between the few that there are.
     if (watched_ms < kWindowMs) {
-      const span_ms = this.drawn[this.drawn.length - 1]!.time_ms - this.since_ms;
-      return span_ms > 0 ? ((this.drawn.length - 1) * 1000) / Math.max(span_ms, watched_ms) : 0;
+      return this.drawn.length > 1 && watched_ms > 0
+        ? ((this.drawn.length - 1) * 1000) / watched_ms
+        : undefined;
     }
     return (this.drawn.length * 1000) / kWindowMs;
   }
