@@ -1,4 +1,5 @@
-// The first minutes with a new server: the one-time password, one's own, and the first picture.
+// The first minutes with a new server: the one-time password, one's own, the first picture, and a whole
+// task by keyboard.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 
@@ -71,4 +72,55 @@ test('who logs out is asked again, and the old token is worth nothing', async ()
   await page.getByRole('menuitem', { name: 'Log out' }).click();
   await userField(page).waitFor();
   await assert.rejects(connect(server.page, token).sessions.whoAmI({}), /unauthenticated/);
+});
+
+/** Presses `key` until the focus is where it is wanted. */
+async function moveTo(page, wanted, key = 'Tab') {
+  const there = () => wanted.evaluate((element) => element === document.activeElement);
+  for (let i = 0; i < 300; ++i) {
+    await page.keyboard.press(key);
+    if (await there()) return;
+  }
+  assert.fail(`300 times ${key} did not lead to ${wanted}`);
+}
+
+test('a whole task needs no mouse: log in, set a parameter, log out', async () => {
+  const page = await browser.newPage();
+  await page.goto(server.page);
+  await until('the first field to have the focus', () => userField(page).evaluate((field) => field === document.activeElement));
+  await page.keyboard.type('admin');
+  await page.keyboard.press('Tab');
+  await page.keyboard.type(adminPassword);
+  await page.keyboard.press('Enter');
+
+  const link = page.getByRole('link', { name: 'live', exact: true });
+  await link.waitFor();
+  await moveTo(page, link);
+  await page.keyboard.press('Enter');
+  const field = page.getByTestId('parameter-match.num_disparities');
+  const number = field.getByRole('textbox');
+  await number.waitFor();
+  const before = Number(await number.inputValue());
+  await moveTo(page, field.getByRole('slider'));
+  await page.keyboard.press('ArrowLeft');
+  await until('the confirmed value', async () => Number(await number.inputValue()) === before - 1);
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('Control+A');
+  await page.keyboard.type(String(before - 5));
+  await page.keyboard.press('Enter');
+  await until('the typed value', async () => (await field.getByTestId('pending').count()) === 0 && Number(await number.inputValue()) === before - 5);
+  const { token } = await page.evaluate(() => JSON.parse(sessionStorage.getItem('visionserver.session')));
+  const paths = ['match.num_disparities'];
+  const { values } = await connect(server.page, token).parameters.getParameters({ sequence: 'live', paths });
+  assert.equal(values[0].value.kind.value, BigInt(before - 5));
+
+  await moveTo(page, page.getByRole('button', { name: 'admin' }), 'Shift+Tab');
+  await page.keyboard.press('Enter');
+  const logOut = page.getByRole('menuitem', { name: 'Log out' });
+  await logOut.waitFor();
+  await moveTo(page, logOut, 'ArrowDown');
+  await page.keyboard.press('Enter');
+  await userField(page).waitFor();
+  assertNoFaults(page);
+  await page.context().close();
 });

@@ -41,22 +41,49 @@ test('a page goes on by itself when its server was restarted', async () => {
   await page.context().close();
 });
 
+async function endSessions() {
+  const { sessions } = await server.admin.users.listSessions({ user: 'emil' });
+  for (const { id } of sessions) await server.admin.sessions.revokeSession({ sessionId: id });
+}
+
+const loginDialog = (page) => page.getByRole('dialog', { name: 'Log in again' });
+
+async function logInAgain(page) {
+  const dialog = loginDialog(page);
+  await dialog.getByLabel(/^Password/).fill(passwordOf('emil'));
+  await dialog.getByRole('button', { name: 'Log in', exact: true }).click();
+  await dialog.waitFor({ state: 'hidden' });
+}
+
 test('a session that an administrator ends is taken up again over the page', async () => {
   const page = await browser.newPage();
   await logIn(page, server, 'emil', '/sequence/live');
   await waitForNextFrame(page);
   await find(page).fill(typed);
 
-  const { sessions } = await server.admin.users.listSessions({ user: 'emil' });
-  for (const { id } of sessions) await server.admin.sessions.revokeSession({ sessionId: id });
-  const dialog = page.getByRole('dialog', { name: 'Log in again' });
-  await dialog.waitFor();
+  await endSessions();
+  await loginDialog(page).waitFor();
   assert.equal(await page.getByRole('navigation').count(), 1, 'the page is still there');
 
-  await dialog.getByLabel(/^Password/).fill(passwordOf('emil'));
-  await dialog.getByRole('button', { name: 'Log in', exact: true }).click();
-  await dialog.waitFor({ state: 'hidden' });
+  await logInAgain(page);
   await waitForNextFrame(page);
   assert.equal(await find(page).inputValue(), typed);
+  await page.context().close();
+});
+
+test('a session that ends is noticed although only the stream of pictures is open', async () => {
+  const page = await browser.newPage();
+  await logIn(page, server, 'emil', '/sequence/live');
+  await waitForNextFrame(page);
+  // No other call is answered, so that none can tell.
+  const held = [];
+  const others = /visionserver\.v1\.\w+\/(?!Subscribe$)/;
+  await page.route(others, (route) => held.push(route));
+  await endSessions();
+  await loginDialog(page).waitFor();
+  await page.unroute(others);
+  await logInAgain(page);
+  for (const route of held) await route.abort().catch(() => {}); // perhaps given up meanwhile
+  await waitForNextFrame(page);
   await page.context().close();
 });

@@ -163,6 +163,16 @@ TEST_F(AccessControlTest, OpenStreamLosesItsRightsWithTheApiKey) {
   EXPECT_EQ(access_->Recheck(kList, caller, false).code(), StatusCode::kUnauthenticated);
 }
 
+TEST_F(AccessControlTest, OpenStreamEndsWithTheLifetimeOfItsSession) {
+  const Caller caller = *access_->Admit(kList, LogIn("maria", kPassword)->token);
+  for (int i = 1; i < 12 * 3; ++i) {  // just below twelve hours, always in use
+    clock_.Advance(minutes(20));
+    EXPECT_TRUE(access_->Recheck(kList, caller, true).ok()) << i;
+  }
+  clock_.Advance(minutes(20));
+  EXPECT_EQ(access_->Recheck(kList, caller, true).reason(), "SESSION_ENDED");
+}
+
 TEST_F(AccessControlTest, StreamThatIsReadKeepsItsSessionAlive) {
   const std::string token = LogIn("maria", kPassword)->token;
   const Caller caller = *access_->Admit(kList, token);
