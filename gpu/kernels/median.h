@@ -62,21 +62,6 @@ VS_KERNEL FilterMedian(const Frame frame, const DeviceMap in, const DeviceMap ou
   out.reason[pixel] = is_valid ? static_cast<uint8_t>(InvalidReason::kNone) : lost;
 }
 
-// The stored disparities of a window that belong to the surface at its centre: visit(d) for each.
-template <class Visit>
-VS_DEVICE void VisitMembers(const Frame& frame, const uint16_t* disparity, int x, int y, int reach,
-                            Visit visit) {
-  const uint8_t* const grey = frame.grey[kLeft];
-  const int centre = grey[y * frame.width + x];
-  for (int v = Greater(y - reach, 0); v <= Lesser(y + reach, frame.height - 1); ++v) {
-    for (int u = Greater(x - reach, 0); u <= Lesser(x + reach, frame.width - 1); ++u) {
-      const int stored = disparity[v * frame.width + u];
-      if (stored == kInvalidDisparity) continue;
-      if (Distance(grey[v * frame.width + u], centre) <= frame.settings.gate) visit(stored);
-    }
-  }
-}
-
 // Pixels that are no members count in turn as greater and as less than any member, so that the
 // median of all is the member of rank count / 2.
 VS_DEVICE uint16_t GatedMedian(const Frame& frame, const uint16_t* disparity, int x, int y) {
@@ -100,19 +85,34 @@ VS_DEVICE uint16_t GatedMedian(const Frame& frame, const uint16_t* disparity, in
   return static_cast<uint16_t>(MedianOf(values));
 }
 
-// What a hole is filled with; kInvalidDisparity when its members are too few or disagree.
+// What a hole is filled with; kInvalidDisparity when its members are too few or disagree. The
+// window is read once: it is looked at about as often as a median has bits, so it stays in
+// registers.
 VS_DEVICE uint16_t FillValue(const Frame& frame, const uint16_t* disparity, int x, int y) {
-  constexpr int kReach = 3;
+  constexpr int kSize = 7;
   constexpr int kLeastMembers = 12;
+  constexpr int kNoMember = 0x10000;  // greater than any
+  const uint8_t* const grey = frame.grey[kLeft];
+  const int centre = grey[y * frame.width + x];
+  int members[kSize * kSize];
   int count = 0;
-  int least = 0xffff;
+  int least = kNoMember;
   int greatest = 0;
-  const auto visit = [&](auto what) { VisitMembers(frame, disparity, x, y, kReach, what); };
-  visit([&](int stored) {
+  VS_UNROLL
+  for (int k = 0; k < kSize * kSize; ++k) {
+    const int u = x + k % kSize - kSize / 2;
+    const int v = y + k / kSize - kSize / 2;
+    members[k] = kNoMember;
+    if (u < 0 || u >= frame.width || v < 0 || v >= frame.height) continue;
+    const int pixel = v * frame.width + u;
+    const int stored = disparity[pixel];
+    if (stored == kInvalidDisparity || Distance(grey[pixel], centre) > frame.settings.gate)
+      continue;
+    members[k] = stored;
     ++count;
     least = Lesser(least, stored);
     greatest = Greater(greatest, stored);
-  });
+  }
   if (count < kLeastMembers) return kInvalidDisparity;
   // The greatest value that at most count / 2 members lie below, bit by bit of what it may exceed
   // the least member by.
@@ -122,11 +122,15 @@ VS_DEVICE uint16_t FillValue(const Frame& frame, const uint16_t* disparity, int 
   for (; bit != 0; bit /= 2) {
     const int limit = median + bit;
     int below = 0;
-    visit([&](int stored) { below += stored < limit ? 1 : 0; });
+    VS_UNROLL
+    for (int k = 0; k < kSize * kSize; ++k) below += members[k] < limit ? 1 : 0;
     if (limit <= greatest && below <= count / 2) median = limit;
   }
   int agreeing = 0;
-  visit([&](int stored) { agreeing += Distance(stored, median) <= kDisparityScale ? 1 : 0; });
+  VS_UNROLL
+  for (int k = 0; k < kSize * kSize; ++k) {
+    agreeing += Distance(members[k], median) <= kDisparityScale && members[k] != kNoMember ? 1 : 0;
+  }
   return agreeing * 10 >= count * 7 ? static_cast<uint16_t>(median) : kInvalidDisparity;
 }
 

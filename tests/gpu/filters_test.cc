@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <functional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "engine/stereo/refine.h"
@@ -108,13 +109,33 @@ TEST_F(Filters, EachByItselfIsTheReferences) {
   all[3].gated_median = true;
   all[4].fill_holes = true;
   all[5].fill_background = true;
+  for (const int gate : {0, 255}) {
+    all.push_back(kNoFilter);
+    all.back().gated_median = all.back().fill_holes = true;
+    all.back().gate = gate;
+  }
+  const std::pair<int, int> sizes[] = {{57, 23}, {57, 23}, {16, 16}, {16, 300}, {301, 17}};
+  uint32_t round = 0;
   for (const SgmSettings& settings : all) {
-    for (uint32_t round = 0; round < 8; ++round) {
-      const GreyImage grey = RandomGreys(57, 23, round, pool_);
-      ExpectEqual(RandomMap(57, 23), grey, settings);
+    for (const auto& [width, height] : sizes) {
+      const GreyImage grey = RandomGreys(width, height, round++, pool_);
+      ExpectEqual(RandomMap(width, height), grey, settings);
       if (HasFatalFailure()) return;
     }
   }
+}
+
+TEST_F(Filters, FillTheWidestRow) {
+  SgmSettings settings = kNoFilter;
+  settings.fill_background = true;
+  const GreyImage grey = RandomGreys(kMaxPictureWidth, 16, 1, pool_);
+  // Rows with one value, or two far from each other, or none at all.
+  const auto at = [](int x, int y) {
+    const bool first = y % 4 == 1 && x == 0;
+    const bool last = y % 4 >= 2 && x == kMaxPictureWidth - 1 - y;
+    return first ? 700 : last ? 500 : y % 4 == 3 && x == 200 ? 300 : 0;
+  };
+  ExpectEqual(MapOf(kMaxPictureWidth, 16, at), grey, settings);
 }
 
 TEST_F(Filters, FindRegionsOfAnyShape) {
