@@ -6,6 +6,10 @@
 // too late goes on from the name that he found there (Playne, Hawick 2018). Last, each run adds its
 // length to its root's count, unless that is large enough already: so the largest regions, in which
 // all would meet, cost the least.
+//
+// All rows are joined at once, so that names form chains as long as the picture is high. Whoever
+// follows a chain shortens it for those after him; as all do, the length shrinks to its logarithm.
+// Only the first pixels of runs are on chains: the others name theirs for good.
 #pragma once
 
 #include <cstdint>
@@ -23,15 +27,20 @@ VS_DEVICE bool Connected(int a, int b, int max_step) {
   return a != kInvalidDisparity && b != kInvalidDisparity && Distance(a, b) <= max_step;
 }
 
-VS_DEVICE uint32_t RootOf(const uint32_t* label, uint32_t pixel) {
-  uint32_t named = ReadShared(&label[pixel]);
-  while (named != pixel) {
-    pixel = named;
-    named = ReadShared(&label[pixel]);
+// The root above the first pixel of a run. Each pixel on the way is made to name the one after the
+// next: an older, greater name of its region is all that others may read or write meanwhile.
+VS_DEVICE uint32_t RootOf(uint32_t* label, uint32_t pixel) {
+  for (;;) {
+    const uint32_t named = ReadShared(&label[pixel]);
+    if (named == pixel) return pixel;
+    const uint32_t next = ReadShared(&label[named]);
+    if (next == named) return named;
+    AtomicMin(&label[pixel], next);
+    pixel = next;
   }
-  return pixel;
 }
 
+// Of first pixels of runs.
 VS_DEVICE void JoinRegions(uint32_t* label, uint32_t a, uint32_t b) {
   for (;;) {
     a = RootOf(label, a);
@@ -82,7 +91,7 @@ VS_KERNEL JoinRows(const Frame frame, const uint16_t* disparity, int max_step) {
       Connected(disparity[above - 1], disparity[above], max_step)) {
     return;
   }
-  JoinRegions(frame.label, static_cast<uint32_t>(pixel), static_cast<uint32_t>(above));
+  JoinRegions(frame.label, ReadShared(&frame.label[pixel]), ReadShared(&frame.label[above]));
 }
 
 VS_KERNEL CountRegions(const Frame frame, const uint16_t* disparity, int max_step) {
@@ -93,10 +102,13 @@ VS_KERNEL CountRegions(const Frame frame, const uint16_t* disparity, int max_ste
   if (disparity[pixel] == kInvalidDisparity) return;
   const auto linked = [&](int p) { return Connected(disparity[p], disparity[p - 1], max_step); };
   if (x + 1 < frame.width && linked(pixel + 1)) return;  // its last pixel counts a run
-  const int first = x > 0 && linked(pixel) ? static_cast<int>(frame.label[pixel]) : pixel;
-  uint32_t* const count = &frame.region[RootOf(frame.label, static_cast<uint32_t>(pixel))];
+  const auto last = static_cast<uint32_t>(pixel);
+  const uint32_t first = x > 0 && linked(pixel) ? frame.label[pixel] : last;
+  const uint32_t root = RootOf(frame.label, first);
+  AtomicMin(&frame.label[first], root);  // the least of its region, so it stays
+  uint32_t* const count = &frame.region[root];
   if (ReadShared(count) > static_cast<uint32_t>(frame.settings.speckle_size)) return;
-  AtomicAdd(count, static_cast<uint32_t>(pixel - first + 1));
+  AtomicAdd(count, last - first + 1);
 }
 
 VS_KERNEL RemoveRegions(const Frame frame, const DeviceMap map) {
@@ -104,7 +116,7 @@ VS_KERNEL RemoveRegions(const Frame frame, const DeviceMap map) {
   if (x >= frame.width) return;
   const int pixel = BlockY() * frame.width + x;
   if (map.disparity[pixel] == kInvalidDisparity) return;
-  const uint32_t root = RootOf(frame.label, static_cast<uint32_t>(pixel));
+  const uint32_t root = frame.label[frame.label[pixel]];  // its run's first pixel names it
   if (frame.region[root] > static_cast<uint32_t>(frame.settings.speckle_size)) return;
   map.disparity[pixel] = kInvalidDisparity;
   map.confidence[pixel] = 0;
