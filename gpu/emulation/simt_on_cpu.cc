@@ -59,6 +59,11 @@ class Block {
     Leave();
   }
   void PassAll() { Pass(&all_); }
+  void LetOthersRun() {
+    if (running_ == 0 || random_() % 4 != 0) return;  // not in a kernel; or not this time
+    ready_.push_back(place.thread);
+    Leave();
+  }
   const WarpValues& Exchange(uint32_t value) {
     Warp& warp = warps_[static_cast<size_t>(place.thread / kWarpSize)];
     const int round = warp.round;
@@ -126,5 +131,8 @@ void Run(Grid grid, int threads_in_block, uint32_t seed, const std::function<voi
 
 const WarpValues& Exchange(uint32_t value) { return block->Exchange(value); }
 void WaitForBlock() { block->PassAll(); }
+void LetOthersRun() {
+  if (block != nullptr) block->LetOthersRun();
+}
 
 }  // namespace vs::gpu::emulation

@@ -1,9 +1,10 @@
 // simt.h for a plain compiler: kernels run on the CPU, for tests. Included by simt.h alone.
 //
 // All threads of a block are fibers of the one thread that calls Run; they change places where they
-// wait for each other, in an order that is shuffled anew each time, and blocks run in a shuffled
-// order too: a kernel that relies on an order, or forgets to wait, gives different results. What is
-// not seen here is how quick it is and what the memory of a real device would do.
+// wait for each other or read what others write, in an order that is shuffled anew each time, and
+// blocks run in a shuffled order too: a kernel that relies on an order, or forgets to wait, gives
+// different results. What is not seen here is how quick it is and what the memory of a real device
+// would do.
 #pragma once
 
 #include <array>
@@ -36,6 +37,8 @@ void Run(Grid grid, int threads_in_block, uint32_t seed, const std::function<voi
 using WarpValues = std::array<uint32_t, kWarpSize>;
 const WarpValues& Exchange(uint32_t value);
 void WaitForBlock();
+// Now and then lets others of the block go on first.
+void LetOthersRun();
 
 }  // namespace emulation
 
@@ -83,7 +86,12 @@ inline uint32_t AtomicAdd(uint32_t* at, uint32_t v) {
   *at += v;
   return before;
 }
-inline uint32_t ReadShared(const uint32_t* at) { return *at; }
+// May be old before the reader does anything with it, as on the device.
+inline uint32_t ReadShared(const uint32_t* at) {
+  const uint32_t value = *at;
+  emulation::LetOthersRun();
+  return value;
+}
 
 // Needs -ffp-contract=off where a CPU could do two at once.
 inline float AddFloats(float a, float b) { return a + b; }

@@ -89,6 +89,19 @@ TEST(Simt, AtomicsSeeEveryThread) {
   EXPECT_EQ(least, 7U);
 }
 
+VS_KERNEL CountWithoutAtomics(uint32_t* sum) {
+  const uint32_t before = ReadShared(sum);
+  *sum = before + 1;
+}
+
+TEST(Simt, WhatIsReadMayBeOld) {
+  EmulatedLaunch launch(4);
+  uint32_t sum = 0;
+  launch(&CountWithoutAtomics, Grid{}, 128, &sum);
+  EXPECT_GT(sum, 0U);
+  EXPECT_LT(sum, 128U);
+}
+
 TEST(Simt, WordsOfBytesAndPairs) {
   EXPECT_EQ(BytePermute(0x33221100, 0x77665544, 0x0472), 0x00447722U);
   EXPECT_EQ(MinPairs(0x00010009, 0x00020003), 0x00010003U);
