@@ -1,5 +1,5 @@
 import { Group, Stack, Tabs, Title } from '@mantine/core';
-import { lazy, Suspense, useMemo, useState } from 'react';
+import { lazy, Suspense, useEffect, useMemo, useRef, useState } from 'react';
 import { useTranslation } from 'react-i18next';
 import { useSearchParams } from 'react-router';
 
@@ -29,17 +29,25 @@ export default function ResultsPage() {
   const results = useMemo(() => pages.data?.pages.flatMap((page) => page.results) ?? [], [pages.data]);
 
   const refresh = () => setNowMs(Date.now());
-  const select = (selected: Selection) => {
-    setAddress((old) => writeSelection(selected, old));
+  // A change may follow another one before the page has been drawn with that.
+  const latest = useRef(address);
+  useEffect(() => {
+    latest.current = address;
+  }, [address]);
+  const go = (next: URLSearchParams) => {
+    latest.current = next;
+    setAddress(next);
+  };
+  const select = (change: Partial<Selection>) => {
+    go(writeSelection({ ...readSelection(latest.current), ...change }, latest.current));
     refresh();
   };
-  const set = (name: string, value: string) =>
-    setAddress((old) => {
-      const changed = new URLSearchParams(old);
-      if (value === '') changed.delete(name);
-      else changed.set(name, value);
-      return changed;
-    });
+  const set = (name: string, value: string) => {
+    const changed = new URLSearchParams(latest.current);
+    if (value === '') changed.delete(name);
+    else changed.set(name, value);
+    go(changed);
+  };
 
   return (
     <Stack gap="md" className="vs-panel">

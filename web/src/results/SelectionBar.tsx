@@ -9,14 +9,13 @@ import { InstantInput, WordInput } from './SelectionInputs';
 
 interface Props {
   selection: Selection;
-  onChange: (selection: Selection) => void;
+  onChange: (change: Partial<Selection>) => void;
   onRefresh: () => void;
 }
 
 /** Which results the page is about. */
 export function SelectionBar({ selection, onChange, onRefresh }: Props) {
   const { t } = useTranslation('results');
-  const set = (change: Partial<Selection>) => onChange({ ...selection, ...change });
   const jobs = useQuery({
     queryKey: ['results', 'jobs'],
     queryFn: ({ signal }) => api.sequences.listSequences({}, { signal }),
@@ -26,29 +25,29 @@ export function SelectionBar({ selection, onChange, onRefresh }: Props) {
       <NativeSelect
         label={t('range')}
         value={selection.range}
-        onChange={(event) => set({ range: event.currentTarget.value as Range })}
+        onChange={(event) => onChange({ range: event.currentTarget.value as Range })}
         data={ranges.map((value) => ({ value, label: t(`ranges.${value}`) }))}
       />
       {selection.range === 'custom' && (
         <>
-          <InstantInput label={t('from')} ms={selection.fromMs} onChange={(fromMs) => set({ fromMs })} />
+          <InstantInput label={t('from')} ms={selection.fromMs} onChange={(fromMs) => onChange({ fromMs })} />
           <InstantInput
             label={t('until')}
             ms={selection.untilMs}
-            onChange={(untilMs) => set({ untilMs })}
+            onChange={(untilMs) => onChange({ untilMs })}
           />
         </>
       )}
       <WordInput
         label={t('job')}
         value={selection.job}
-        onChange={(job) => set({ job })}
+        onChange={(job) => onChange({ job })}
         choices={jobs.data?.sequences.map((sequence) => sequence.id) ?? []}
       />
       <NativeSelect
         label={t('class')}
         value={selection.resultClass}
-        onChange={(event) => set({ resultClass: Number(event.currentTarget.value) })}
+        onChange={(event) => onChange({ resultClass: Number(event.currentTarget.value) })}
         data={[
           { value: String(ResultClass.UNSPECIFIED), label: t('any') },
           ...[ResultClass.PASS, ResultClass.WARN, ResultClass.FAIL].map((value) => ({
@@ -60,7 +59,7 @@ export function SelectionBar({ selection, onChange, onRefresh }: Props) {
       <NativeSelect
         label={t('state')}
         value={selection.state}
-        onChange={(event) => set({ state: Number(event.currentTarget.value) })}
+        onChange={(event) => onChange({ state: Number(event.currentTarget.value) })}
         data={[
           { value: String(ResultState.UNSPECIFIED), label: t('any') },
           ...([ResultState.COMPLETED, ResultState.ABORTED, ResultState.FAILED] as const).map(
@@ -68,7 +67,7 @@ export function SelectionBar({ selection, onChange, onRefresh }: Props) {
           ),
         ]}
       />
-      <WordInput label={t('part')} value={selection.part} onChange={(part) => set({ part })} />
+      <WordInput label={t('part')} value={selection.part} onChange={(part) => onChange({ part })} />
       <Button variant="default" onClick={() => onChange(everything)}>
         {t('reset')}
       </Button>
