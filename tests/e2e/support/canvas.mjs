@@ -22,7 +22,14 @@ export async function waitForNextFrame(page, { startedAnew = false } = {}) {
 
 /** The pixels of the map as they are on the screen; `at` gives red, of the middle of a pixel. */
 export async function shownPixels(page) {
-  const { bytes, ...shown } = await map(page).evaluate((canvas) => {
+  const { bytes, ...shown } = await map(page).evaluate(async (canvas) => {
+    // A page that is just laid out anew has not yet painted what its size says.
+    const animationFrame = () => new Promise((resolve) => requestAnimationFrame(resolve));
+    const look = () => {
+      const { clientWidth, clientHeight, width, height, dataset } = canvas;
+      return JSON.stringify([clientWidth, clientHeight, width, height, dataset.left, dataset.top, dataset.scale]);
+    };
+    for (let before = ''; before !== look(); await animationFrame(), await animationFrame()) before = look();
     const copy = document.createElement('canvas');
     copy.width = canvas.width;
     copy.height = canvas.height;

@@ -50,6 +50,13 @@ class AuditLogTest : public ::testing::Test {
     for (const AuditEntry& entry : List(filter)) subjects.push_back(entry.subject);
     return subjects;
   }
+  // Nobody else writes the file until this COMMITs.
+  Database LockFile() {
+    Database other = *Database::Open(folder_ / "audit.db", Database::Access::kReadWrite);
+    other.SetBusyTimeout(std::chrono::minutes(1));  // the log may be at its first trim
+    EXPECT_TRUE(other.Execute("BEGIN EXCLUSIVE").ok());
+    return other;
+  }
   bool WaitForEntries(size_t count) {
     return WaitUntil([&] { return List().size() == count; });
   }
@@ -143,8 +150,7 @@ TEST_F(AuditLogTest, KeepsNoMoreThanItsLimits) {
 }
 
 TEST_F(AuditLogTest, LosesNothingWhileTheFileCannotBeWritten) {
-  Database other = *Database::Open(folder_ / "audit.db", Database::Access::kReadWrite);
-  ASSERT_TRUE(other.Execute("BEGIN EXCLUSIVE").ok());
+  Database other = LockFile();
   log_->Record(CallOf("maria", kStart, "one"), Status());
   EXPECT_TRUE(WaitUntil([&] { return failing_.load(); }));
   log_->Record(CallOf("maria", kStart, "two"), Status());
@@ -155,8 +161,7 @@ TEST_F(AuditLogTest, LosesNothingWhileTheFileCannotBeWritten) {
 }
 
 TEST_F(AuditLogTest, CountsWhatItHadNoRoomFor) {
-  Database other = *Database::Open(folder_ / "audit.db", Database::Access::kReadWrite);
-  ASSERT_TRUE(other.Execute("BEGIN EXCLUSIVE").ok());
+  Database other = LockFile();
   constexpr size_t kMore = 10;
   for (size_t i = 0; i < AuditLog::kMaxWaiting / 2 + kMore; ++i) {
     log_->Record(CallOf("", kLogin, "x"), Unauthenticated("wrong"));
