@@ -77,34 +77,26 @@ void BlurSpan(const uint8_t* a, const uint8_t* b, const uint8_t* c, int count, B
   }
 }
 
-// The rows beyond the border are the border's.
-GreyImage Blurred(const GreyImage& picture, BlurWeights weights, BufferPool& pool) {
+// The rows beyond the border are the border's. `across` is room to work in.
+void Blur(const GreyImage& picture, BlurWeights weights, GreyImage* across, GreyImage* out) {
   const int width = picture.width();
   const int height = picture.height();
-  GreyImage across(pool, width, height);
   for (int y = 0; y < height; ++y) {
     const uint8_t* row = picture.Row(y);
-    uint8_t* out = across.Row(y);
-    BlurSpan(row, row, row + 1, 1, weights, out);
-    BlurSpan(row, row + 1, row + 2, width - 2, weights, out + 1);
-    BlurSpan(row + width - 2, row + width - 1, row + width - 1, 1, weights, out + width - 1);
+    uint8_t* to = across->Row(y);
+    BlurSpan(row, row, row + 1, 1, weights, to);
+    BlurSpan(row, row + 1, row + 2, width - 2, weights, to + 1);
+    BlurSpan(row + width - 2, row + width - 1, row + width - 1, 1, weights, to + width - 1);
   }
-  GreyImage out(pool, width, height);
   for (int y = 0; y < height; ++y) {
-    BlurSpan(across.Row(std::max(y - 1, 0)), across.Row(y), across.Row(std::min(y + 1, height - 1)),
-             width, weights, out.Row(y));
+    BlurSpan(across->Row(std::max(y - 1, 0)), across->Row(y),
+             across->Row(std::min(y + 1, height - 1)), width, weights, out->Row(y));
   }
-  return out;
-}
-
-PreBlur BlurFor(const GreyImage& left, const GreyImage& right, PreBlur asked) {
-  if (asked != PreBlur::kAutomatic) return asked;
-  const int noise = std::max(NoiseSixteenths(left), NoiseSixteenths(right));
-  return noise >= kStrongBlurFrom ? PreBlur::kStrong : PreBlur::kOff;
 }
 
 // Quantiles of the greys in columns [begin, end), in sixteenths of a grey level.
-std::array<int, kQuantiles> QuantilesOf(const GreyImage& picture, int begin, int end) {
+using Quantiles = std::array<int, kQuantiles>;
+Quantiles QuantilesOf(const GreyImage& picture, int begin, int end) {
   // Neighbours, often of one grey, are counted apart: one count would wait for the other.
   constexpr int kCounters = 4;
   uint32_t counters[kCounters][256] = {};
@@ -121,7 +113,7 @@ std::array<int, kQuantiles> QuantilesOf(const GreyImage& picture, int begin, int
     for (int grey = 0; grey < 256; ++grey) counts[grey] += counter[grey];
   }
   const int64_t pixels = static_cast<int64_t>(end - begin) * picture.height();
-  std::array<int, kQuantiles> quantiles = {};
+  Quantiles quantiles = {};
   int64_t below = 0;
   int grey = 0;
   for (int k = 0; k < kQuantiles; ++k) {
@@ -131,6 +123,44 @@ std::array<int, kQuantiles> QuantilesOf(const GreyImage& picture, int begin, int
     quantiles[k] = 16 * grey - 8 + static_cast<int>(part);
   }
   return quantiles;
+}
+
+struct Columns {
+  int begin;
+  int end;
+};
+
+// Those of one picture that show the same part of the scene as the other, if it lies at the middle
+// of the range.
+Columns CommonColumns(int width, const SgmSettings& settings, bool of_right) {
+  const int middle = settings.min_disparity + settings.num_disparities / 2;
+  const int shift = std::abs(middle) <= width / 2 ? middle : 0;
+  const int from_left = std::max(of_right ? -shift : shift, 0);
+  const int from_right = std::max(of_right ? shift : -shift, 0);
+  return {from_left, width - from_right};
+}
+
+GreyMap MapBetween(const Quantiles& l, const Quantiles& r) {
+  int64_t sum_l = 0;
+  int64_t sum_r = 0;
+  int64_t sum_rr = 0;
+  int64_t sum_lr = 0;
+  int64_t difference = 0;
+  for (int k = 0; k < kQuantiles; ++k) {
+    sum_l += l[k];
+    sum_r += r[k];
+    sum_rr += int64_t{r[k]} * r[k];
+    sum_lr += int64_t{l[k]} * r[k];
+    difference += std::abs(l[k] - r[k]);
+  }
+  if (difference < int64_t{kQuantiles} * kLeastGreyDifference) return {};
+  const int64_t spread = kQuantiles * sum_rr - sum_r * sum_r;
+  // A standard deviation of less than 4 grey levels.
+  if (spread < int64_t{kQuantiles} * kQuantiles * 64 * 64) return {};
+  const int64_t gain = GreyMap::kOne * (kQuantiles * sum_lr - sum_l * sum_r) / spread;
+  if (gain < GreyMap::kOne / 2 || gain > int64_t{GreyMap::kOne} * 2) return {};
+  const int64_t offset = (GreyMap::kOne * sum_l - gain * sum_r) / (int64_t{kQuantiles} * 16);
+  return {static_cast<int>(gain), static_cast<int>(offset)};
 }
 
 GreyImage Mapped(const GreyImage& picture, const GreyMap& map, BufferPool& pool) {
@@ -172,48 +202,61 @@ int NoiseSixteenths(const GreyImage& picture) {
 }
 
 GreyMap MatchGreys(const GreyImage& left, const GreyImage& right, const SgmSettings& settings) {
-  const int width = left.width();
-  const int middle = settings.min_disparity + settings.num_disparities / 2;
-  // The same part of the scene in both, if it lies at the middle of the range.
-  const int shift = std::abs(middle) <= width / 2 ? middle : 0;
-  const auto l = QuantilesOf(left, std::max(shift, 0), width + std::min(shift, 0));
-  const auto r = QuantilesOf(right, std::max(-shift, 0), width - std::max(shift, 0));
-  int64_t sum_l = 0;
-  int64_t sum_r = 0;
-  int64_t sum_rr = 0;
-  int64_t sum_lr = 0;
-  int64_t difference = 0;
-  for (int k = 0; k < kQuantiles; ++k) {
-    sum_l += l[k];
-    sum_r += r[k];
-    sum_rr += int64_t{r[k]} * r[k];
-    sum_lr += int64_t{l[k]} * r[k];
-    difference += std::abs(l[k] - r[k]);
+  const Columns l = CommonColumns(left.width(), settings, false);
+  const Columns r = CommonColumns(left.width(), settings, true);
+  return MapBetween(QuantilesOf(left, l.begin, l.end), QuantilesOf(right, r.begin, r.end));
+}
+
+PicturePair ConditionPair(const GreyImage& left, const GreyImage& right,
+                          const SgmSettings& settings, int parts, ThreadTeam* team,
+                          BufferPool& pool) {
+  PicturePair pair = {left, right};
+  GreyImage* const pictures[] = {&pair.left, &pair.right};
+  const auto each = [&](const auto& work) {
+    const int threads = std::min(parts, 2);
+    team->Run(threads, [&](int part) {
+      for (int which = part; which < 2; which += threads) work(which);
+    });
+  };
+  const bool measures_noise = settings.pre_blur == PreBlur::kAutomatic;
+  int noise[2] = {};
+  Quantiles quantiles[2] = {};
+  if (measures_noise || settings.match_gain) {
+    each([&](int which) {
+      if (measures_noise) noise[which] = NoiseSixteenths(*pictures[which]);
+      if (settings.match_gain) {
+        const Columns columns = CommonColumns(left.width(), settings, which == 1);
+        quantiles[which] = QuantilesOf(*pictures[which], columns.begin, columns.end);
+      }
+    });
   }
-  if (difference < int64_t{kQuantiles} * kLeastGreyDifference) return {};
-  const int64_t spread = kQuantiles * sum_rr - sum_r * sum_r;
-  // A standard deviation of less than 4 grey levels.
-  if (spread < int64_t{kQuantiles} * kQuantiles * 64 * 64) return {};
-  const int64_t gain = GreyMap::kOne * (kQuantiles * sum_lr - sum_l * sum_r) / spread;
-  if (gain < GreyMap::kOne / 2 || gain > int64_t{GreyMap::kOne} * 2) return {};
-  const int64_t offset = (GreyMap::kOne * sum_l - gain * sum_r) / (int64_t{kQuantiles} * 16);
-  return {static_cast<int>(gain), static_cast<int>(offset)};
+  if (settings.match_gain) {
+    const GreyMap map = MapBetween(quantiles[0], quantiles[1]);
+    if (map != GreyMap{}) pair.right = Mapped(right, map, pool);
+  }
+  PreBlur blur = settings.pre_blur;
+  if (measures_noise) {  // before the gain, which amplifies the noise of one picture
+    const bool strong = std::max(noise[0], noise[1]) >= kStrongBlurFrom;
+    blur = strong ? PreBlur::kStrong : PreBlur::kOff;
+  }
+  if (blur != PreBlur::kOff) {
+    const BlurWeights weights = blur == PreBlur::kLight ? kLight : kStrong;
+    const PicturePair sharp = pair;
+    const GreyImage* const from[] = {&sharp.left, &sharp.right};
+    GreyImage across[2];
+    for (int which = 0; which < 2; ++which) {  // here, where it may throw
+      across[which] = GreyImage(pool, left.width(), left.height());
+      *pictures[which] = GreyImage(pool, left.width(), left.height());
+    }
+    each([&](int which) { Blur(*from[which], weights, &across[which], pictures[which]); });
+  }
+  return pair;
 }
 
 PicturePair ConditionPair(const GreyImage& left, const GreyImage& right,
                           const SgmSettings& settings, BufferPool& pool) {
-  PicturePair pair = {left, right};
-  // Before the gain, which would amplify the noise of one picture.
-  const PreBlur blur = BlurFor(left, right, settings.pre_blur);
-  if (settings.match_gain) {
-    const GreyMap map = MatchGreys(left, right, settings);
-    if (map != GreyMap{}) pair.right = Mapped(right, map, pool);
-  }
-  if (blur != PreBlur::kOff) {
-    const BlurWeights weights = blur == PreBlur::kLight ? kLight : kStrong;
-    pair = {Blurred(pair.left, weights, pool), Blurred(pair.right, weights, pool)};
-  }
-  return pair;
+  ThreadTeam alone;
+  return ConditionPair(left, right, settings, 1, &alone, pool);
 }
 
 }  // namespace vs

@@ -3,6 +3,7 @@
 #include "engine/image/buffer.h"
 #include "engine/image/image.h"
 #include "engine/stereo/sgm_settings.h"
+#include "engine/stereo/thread_team.h"
 
 namespace vs {
 
@@ -17,7 +18,11 @@ struct PicturePair {
   GreyImage right;
 };
 
-// The same pictures, not copied, where there is nothing to do.
+// The same pictures, not copied, where there is nothing to do. With more than one part each picture
+// has a thread of its own.
+PicturePair ConditionPair(const GreyImage& left, const GreyImage& right,
+                          const SgmSettings& settings, int parts, ThreadTeam* team,
+                          BufferPool& pool);
 PicturePair ConditionPair(const GreyImage& left, const GreyImage& right,
                           const SgmSettings& settings, BufferPool& pool);
 

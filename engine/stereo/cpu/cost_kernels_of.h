@@ -25,6 +25,30 @@ inline void ComputeCensusRow(const CensusRowWork& work) {
   }
 }
 
+// Place u + cell of the mirrored row, where u = width - 1 - x, is stripe u % kStripes of column
+// u / kStripes + kLanes.
+template <int kStripes>
+void StripeRow(const Plan& plan, const uint8_t* row, uint8_t* striped) {
+  uint8_t* const out = striped + kLanes;
+  const size_t stride = plan.right_stride;
+  const uint8_t* const last = row + plan.width - 1;
+  const int columns = plan.width / kStripes;
+  int u = 0;
+  if (columns >= kLanes) {
+    for (int k = 0; k < columns; k += kLanes) {
+      // The last piece ends with the row.
+      const int from = k + kLanes <= columns ? k : columns - kLanes;
+#pragma GCC unroll 16
+      for (int r = 0; r < kStripes; ++r) {
+        Simd::StoreAnywhere(out + r * stride + from,
+                            Simd::EveryNth<kStripes>(last - from * kStripes - r));
+      }
+    }
+    u = columns * kStripes;
+  }
+  for (; u < plan.width; ++u) out[u % kStripes * stride + u / kStripes] = last[-u];
+}
+
 inline void ComputePenaltyRow(const PenaltySteps& steps, const uint8_t* grey, const uint8_t* from,
                               int count, uint8_t* p2) {
   const V one = Simd::Set(1);
@@ -212,17 +236,21 @@ class RawCosts {
   int next_ = 0;
 };
 
+// `yes` if the mask is 0xff, `no` if it is 0; without a branch that nobody could predict.
+VS_INLINE const uint8_t* Either(uint8_t mask, const uint8_t* yes, const uint8_t* no) {
+  return no + (static_cast<int8_t>(mask) & (yes - no));
+}
+
 // The mean of a cell and its neighbours before and after, which stop at an edge.
 template <int kStripes>
-VS_INLINE void SmoothAlong(const Cell<kStripes>& before, uint8_t like_before,
-                           const Cell<kStripes>& centre, const Cell<kStripes>& after,
-                           uint8_t like_after, uint8_t* out) {
-  const V use_before = Simd::Set(like_before);
-  const V use_after = Simd::Set(like_after);
+VS_INLINE void SmoothAlong(const uint8_t* before, uint8_t like_before, const uint8_t* centre,
+                           const uint8_t* after, uint8_t like_after, uint8_t* out) {
+  before = Either(like_before, before, centre);
+  after = Either(like_after, after, centre);
   for (int r = 0; r < kStripes; ++r) {
-    const V b = Simd::Choose(use_before, before.v[r], centre.v[r]);
-    const V a = Simd::Choose(use_after, after.v[r], centre.v[r]);
-    Simd::Store(out + r * kLanes, Simd::Average(centre.v[r], Simd::Average(b, a)));
+    const int at = r * kLanes;
+    const V sides = Simd::Average(Simd::Load(before + at), Simd::Load(after + at));
+    Simd::Store(out + at, Simd::Average(Simd::Load(centre + at), sides));
   }
 }
 
@@ -231,29 +259,28 @@ template <int kStripes, class Work, class Compute>
 VS_INLINE void MakeCostRow(const Plan& plan, const Work& work, Compute compute) {
   constexpr int kCell = kStripes * kLanes;
   const auto out = [&](int x) { return work.row + static_cast<size_t>(x) * kCell; };
-  Cell<kStripes> before;
-  Cell<kStripes> centre;
-  Cell<kStripes> after;
-  after.Fill(0);
-  centre.Fill(0);
   if (plan.gate < 0) {
-    for (int x = work.begin; x < work.end; ++x) {
-      compute(x, &after);
-      after.Store(out(x));
-    }
+    for (int x = work.begin; x < work.end; ++x) compute(x, out(x));
     return;
   }
+  alignas(64) uint8_t cells[3][kCell] = {};
+  uint8_t* before = cells[0];
+  uint8_t* centre = cells[1];
+  uint8_t* after = cells[2];
   const int end = work.end < plan.width ? work.end + 1 : plan.width;
   for (int x = work.begin > 0 ? work.begin - 1 : 0; x < end; ++x) {
+    uint8_t* const oldest = before;
     before = centre;
     centre = after;
-    compute(x, &after);
+    after = oldest;
+    compute(x, after);
     if (x > work.begin) {
-      SmoothAlong(before, work.like_before[x - 1], centre, after, work.like_before[x], out(x - 1));
+      SmoothAlong<kStripes>(before, work.like_before[x - 1], centre, after, work.like_before[x],
+                            out(x - 1));
     }
   }
   if (work.end == plan.width) {
-    SmoothAlong(centre, work.like_before[end - 1], after, after, 0, out(end - 1));
+    SmoothAlong<kStripes>(centre, work.like_before[end - 1], after, after, 0, out(end - 1));
   }
 }
 
@@ -311,8 +338,10 @@ void ComputeWindowRow(const Plan& shared_plan, const WindowRow& shared_work) {
   const Plan plan = shared_plan;  // see SweepPixels
   const WindowRow work = shared_work;
   const Layout<kStripes> layout(plan);
-  MakeCostRow<kStripes>(plan, work, [&](int x, Cell<kStripes>* cell) {
-    AverageWindow<kStripes>(plan, layout, x, work.sums, cell);
+  MakeCostRow<kStripes>(plan, work, [&](int x, uint8_t* out) {
+    Cell<kStripes> mean;
+    AverageWindow<kStripes>(plan, layout, x, work.sums, &mean);
+    mean.Store(out);
   });
 }
 
@@ -324,8 +353,10 @@ void ComputeCostRow(const Plan& shared_plan, const CostRow& shared_work) {
   RawCosts<kStripes, kKind> raw(plan, layout, work.y);
   // Inlined, so that its state stays in registers.
   MakeCostRow<kStripes>(
-      plan, work, [&](int x, Cell<kStripes>* cell) __attribute__((always_inline)) {
-        raw.Compute(x, cell);
+      plan, work, [&](int x, uint8_t* out) __attribute__((always_inline)) {
+        Cell<kStripes> cell;
+        raw.Compute(x, &cell);
+        cell.Store(out);
       });
 }
 

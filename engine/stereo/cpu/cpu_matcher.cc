@@ -141,9 +141,9 @@ class CpuMatcher final : public StereoMatcher {
 Result<DisparityMap> CpuMatcher::MatchPair(const GreyImage& raw_left, const GreyImage& raw_right,
                                            const SgmSettings& settings, int threads,
                                            BufferPool& pool) {
-  const PicturePair pair = ConditionPair(raw_left, raw_right, settings, pool);
+  const int parts = std::clamp(threads, 1, 2 * (raw_left.width() / kLeastColumns));
+  const PicturePair pair = ConditionPair(raw_left, raw_right, settings, parts, &team_, pool);
   const GreyImage& left = pair.left;
-  const int parts = std::clamp(threads, 1, 2 * (left.width() / kLeastColumns));
   VS_RETURN_IF_ERROR(Prepare(left, pair.right, settings, parts));
   DisparityMap map = MakeDisparityMap(left.width(), left.height(), DisparityOffset(settings), pool);
   meeting_.Reset(parts);
@@ -240,13 +240,8 @@ void CpuMatcher::MakeFeatures(const SgmSettings& settings, int part, RowRange ro
     uint8_t* striped = right_features_.Reserve(0) +
                        static_cast<size_t>(y) * plan.planes * plan.stripes * plan.right_stride;
     for (int p = 0; p < plan.planes; ++p) {
-      const uint8_t* from = right.data() + p * width;
-      for (int stripe = 0; stripe < plan.stripes; ++stripe, striped += plan.right_stride) {
-        // Place width - 1 - x + cell of the mirrored row.
-        const int first = ((plan.cell - stripe + plan.stripes - 1) / plan.stripes);
-        int x = plan.width - 1 + plan.cell - (first * plan.stripes + stripe);
-        for (uint8_t* out = striped + first; x >= 0; x -= plan.stripes) *out++ = from[x];
-      }
+      kernels_->stripe_row(plan, right.data() + p * width,
+                           striped + p * plan.stripes * plan.right_stride);
     }
   }
 }

@@ -153,6 +153,9 @@ struct Kernels {
   // 0xff beyond the range, else 0; the cost of the outside, kBeyond beyond the range.
   void (*layout)(const Plan& plan, uint8_t* out);
   void (*census_row)(const CensusRowWork& work);
+  // A row of one plane of the right view in the striped layout: `striped` has plan.stripes rows of
+  // plan.right_stride bytes.
+  void (*stripe_row)(const Plan& plan, const uint8_t* row, uint8_t* striped);
   // P2 between the pixels of two rows of grey values, count pixels each; may write up to the next
   // multiple of `lanes`, and read as far.
   void (*penalty_row)(const PenaltySteps& steps, const uint8_t* grey, const uint8_t* from,

@@ -9,7 +9,7 @@
 namespace vs::cpu {
 
 const Kernels* Avx2Kernels() {
-  static constexpr Kernels kKernels = KernelSet<2, 4, 6, 8>::Make("avx2");
+  static constexpr Kernels kKernels = KernelSet<2, 4, 6, 7, 8>::Make("avx2");
   return __builtin_cpu_supports("avx2") ? &kKernels : nullptr;
 }
 

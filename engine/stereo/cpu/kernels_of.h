@@ -16,6 +16,7 @@ namespace {
 using CostFunction = void (*)(const Plan&, const CostRow&);
 using SweepFunction = void (*)(const Plan&, const SweepRow&);
 struct StripeKernels {
+  void (*stripe_row)(const Plan&, const uint8_t*, uint8_t*);
   CostFunction cost[vs::cpu::kCostKinds];
   void (*window_sums)(const Plan&, const WindowSums&);
   void (*window_row)(const Plan&, const WindowRow&);
@@ -27,6 +28,7 @@ struct StripeKernels {
 template <int kStripes>
 constexpr StripeKernels MakeStripeKernels() {
   return {
+      &StripeRow<kStripes>,
       {&ComputeCostRow<kStripes, CostKind::kCensus3>, &ComputeCostRow<kStripes, CostKind::kCensus6>,
        &ComputeCostRow<kStripes, CostKind::kCensus8>,
        &ComputeCostRow<kStripes, CostKind::kAdCensus3>,
@@ -60,6 +62,9 @@ struct KernelSet {
     while (kCounts[k] != stripes) ++k;
     return kTables[k];
   }
+  static void Stripe(const Plan& plan, const uint8_t* row, uint8_t* striped) {
+    Of(plan.stripes).stripe_row(plan, row, striped);
+  }
   static void Cost(const Plan& plan, CostKind kind, const CostRow& work) {
     Of(plan.stripes).cost[static_cast<int>(kind)](plan, work);
   }
@@ -80,6 +85,7 @@ struct KernelSet {
             &Stripes,
             &MakeLayout,
             &ComputeCensusRow,
+            &Stripe,
             &ComputePenaltyRow,
             &ComputeLikenessRow,
             &Cost,

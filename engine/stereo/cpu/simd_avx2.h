@@ -27,6 +27,12 @@ struct Simd {
   static void Stream(uint8_t* p, V a) { _mm256_stream_si256(reinterpret_cast<__m256i*>(p), a.v); }
   static void EndStream() { _mm_sfence(); }
   static V Set(uint8_t a) { return {_mm256_set1_epi8(static_cast<char>(a))}; }
+  template <int n>
+  static V EveryNth(const uint8_t* last) {
+    alignas(32) uint8_t a[kLanes];
+    for (int k = 0; k < kLanes; ++k) a[k] = last[-k * n];
+    return Load(a);
+  }
 
   static V Min(V a, V b) { return {_mm256_min_epu8(a.v, b.v)}; }
   static V Max(V a, V b) { return {_mm256_max_epu8(a.v, b.v)}; }
@@ -55,7 +61,6 @@ struct Simd {
     return {_mm256_blendv_epi8(yes.v, no.v, not_less)};
   }
 
-  static V Choose(V mask, V yes, V no) { return {_mm256_blendv_epi8(no.v, yes.v, mask.v)}; }
   using Exception = uint8_t;  // the lane
   static constexpr Exception kNoException = 255;
   static constexpr Exception Except(int lane) { return static_cast<Exception>(lane); }

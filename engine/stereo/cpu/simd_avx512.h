@@ -21,6 +21,19 @@ struct Simd {
   static void Stream(uint8_t* p, V a) { _mm512_stream_si512(reinterpret_cast<__m512i*>(p), a.v); }
   static void EndStream() { _mm_sfence(); }
   static V Set(uint8_t a) { return {_mm512_set1_epi8(static_cast<char>(a))}; }
+  template <int n>
+  static V EveryNth(const uint8_t* last) {
+    // Piece j of n ends at last[-64 * j]; lane k comes from piece k * n / 64.
+    static constexpr Places<n> kPlaces;
+    const __m512i places = _mm512_load_si512(kPlaces.of);
+    __m512i a = _mm512_setzero_si512();
+#pragma GCC unroll 4
+    for (int j = 0; j < n; ++j) {
+      a = _mm512_mask_permutexvar_epi8(a, kPlaces.lanes[j], places,
+                                       _mm512_loadu_si512(last - 64 * j - 63));
+    }
+    return {a};
+  }
 
   static V Min(V a, V b) { return {_mm512_min_epu8(a.v, b.v)}; }
   static V Max(V a, V b) { return {_mm512_max_epu8(a.v, b.v)}; }
@@ -39,9 +52,6 @@ struct Simd {
   }
   static V IfLess(V a, V b, V yes, V no) {
     return {_mm512_mask_blend_epi8(_mm512_cmplt_epu8_mask(a.v, b.v), no.v, yes.v)};
-  }
-  static V Choose(V mask, V yes, V no) {
-    return {_mm512_ternarylogic_epi32(mask.v, yes.v, no.v, 0xca)};
   }
   using Exception = uint64_t;  // the other lanes
   static constexpr Exception kNoException = ~0ULL;
@@ -79,6 +89,18 @@ struct Simd {
   }
 
  private:
+  template <int n>
+  struct Places {
+    alignas(64) uint8_t of[64] = {};  // by lane, in its piece
+    uint64_t lanes[n] = {};           // by piece
+
+    constexpr Places() {
+      for (int k = 0; k < 64; ++k) {
+        of[k] = static_cast<uint8_t>(63 - k * n % 64);
+        lanes[k * n / 64] |= 1ULL << k;
+      }
+    }
+  };
   static __m128i Least(V a) {
     const __m256i half =
         _mm256_min_epu8(_mm512_castsi512_si256(a.v), _mm512_extracti64x4_epi64(a.v, 1));

@@ -27,6 +27,13 @@ struct Simd {
   static void Stream(uint8_t* p, V a) { Store(p, a); }
   static void EndStream() {}
   static V Set(uint8_t a) { return V{} + a; }
+  // Lane k is last[-k * n].
+  template <int n>
+  static V EveryNth(const uint8_t* last) {
+    V a;
+    for (int k = 0; k < kLanes; ++k) a[k] = last[-k * n];
+    return a;
+  }
 
   static V Min(V a, V b) { return a < b ? a : b; }
   static V Max(V a, V b) { return a > b ? a : b; }
@@ -51,8 +58,6 @@ struct Simd {
   // Lane by lane `yes` or `no`.
   static V IfEqual(V a, V b, V yes, V no) { return a == b ? yes : no; }
   static V IfLess(V a, V b, V yes, V no) { return a < b ? yes : no; }
-  // `yes` where the mask is 0xff, `no` where it is 0.
-  static V Choose(V mask, V yes, V no) { return no ^ (mask & (yes ^ no)); }
 
   // Min(a, b), but a in the excepted lane.
   using Exception = uint8_t;

@@ -218,11 +218,6 @@ class RightWinners {
   Cell<kStripes> index_;
 };
 
-// `yes` if the mask is 0xff, `no` if it is 0; without a branch that nobody could predict.
-VS_INLINE const uint8_t* Either(uint8_t mask, const uint8_t* yes, const uint8_t* no) {
-  return no + (static_cast<int8_t>(mask) & (yes - no));
-}
-
 // How many pixels ahead stored sums are fetched.
 constexpr int kPrefetch = 10;
 
