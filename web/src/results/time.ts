@@ -2,6 +2,8 @@
 import type { Duration, Timestamp } from '@bufbuild/protobuf/wkt';
 import { timestampMs } from '@bufbuild/protobuf/wkt';
 
+import { formatNumber, kNone } from '../shell/format';
+
 // "22/11/2026, 18:31:05.123" in the user's way of writing.
 export function localText(time: Timestamp | undefined, locale: string): string {
   return localTextOfMs(time && timestampMs(time), locale);
@@ -9,7 +11,7 @@ export function localText(time: Timestamp | undefined, locale: string): string {
 
 // The same of milliseconds since 1970 in UTC.
 export function localTextOfMs(ms: number | undefined, locale: string): string {
-  if (ms === undefined) return '–';
+  if (ms === undefined) return kNone;
   return new Date(ms).toLocaleString(locale, {
     year: 'numeric',
     month: '2-digit',
@@ -27,10 +29,10 @@ export function utcText(time: Timestamp | undefined): string {
   return time ? new Date(timestampMs(time)).toISOString() : '';
 }
 
-// Milliseconds with one digit behind the point: "45.5 ms".
+// Milliseconds with one decimal, in the language of the page: "45.5 ms".
 export function durationText(duration: Duration | undefined): string {
-  if (!duration) return '–';
-  return `${(Number(duration.seconds) * 1e3 + duration.nanos / 1e6).toFixed(1)} ms`;
+  if (!duration) return kNone;
+  return `${formatNumber(Number(duration.seconds) * 1e3 + duration.nanos / 1e6, 1)}\u00a0ms`;
 }
 
 // For an <input type="datetime-local">, which has local time without a zone; and back.
