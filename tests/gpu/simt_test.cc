@@ -18,7 +18,7 @@ VS_KERNEL Note(int* out) {
 
 TEST(Simt, EveryThreadOfEveryBlockRunsOnce) {
   EmulatedLaunch launch(1);
-  std::vector<int> out(3 * 2 * 64, -1);
+  std::vector<int> out(size_t{3} * 2 * 64, -1);
   launch(&Note, Grid{3, 2}, 64, out.data());
   for (int y = 0; y < 2; ++y) {
     for (int x = 0; x < 3; ++x) {
@@ -29,7 +29,7 @@ TEST(Simt, EveryThreadOfEveryBlockRunsOnce) {
 
 VS_KERNEL TalkInWarps(uint32_t* out) {
   const auto t = static_cast<uint32_t>(ThreadInBlock());
-  uint32_t* const mine = out + 6 * t;
+  uint32_t* const mine = out + size_t{6} * t;
   mine[0] = ShuffleUp(t, 1);
   mine[1] = ShuffleDown(t, 2);
   mine[2] = ShuffleXor(t, 16);
@@ -40,10 +40,11 @@ VS_KERNEL TalkInWarps(uint32_t* out) {
 
 TEST(Simt, LanesTalkWithinTheirWarp) {
   EmulatedLaunch launch(2);
-  std::vector<uint32_t> out(6 * 64);
+  std::vector<uint32_t> out(size_t{6} * 64);
   launch(&TalkInWarps, Grid{}, 64, out.data());
   const auto of = [&](int thread) {
-    return std::vector<uint32_t>(out.begin() + 6 * thread, out.begin() + 6 * thread + 6);
+    const auto first = out.begin() + ptrdiff_t{6} * thread;
+    return std::vector<uint32_t>(first, first + 6);
   };
   EXPECT_EQ(of(0), (std::vector<uint32_t>{0, 2, 16, 5, 69, 496}));
   EXPECT_EQ(of(31), (std::vector<uint32_t>{30, 31, 15, 5, 69, 496}));

@@ -237,11 +237,10 @@ void CpuMatcher::MakeFeatures(const SgmSettings& settings, int part, RowRange ro
     FeatureRowOf(left_, settings, y,
                  left_features_.Reserve(0) + static_cast<size_t>(y) * plan.planes * width);
     FeatureRowOf(right_, settings, y, right.data());
-    uint8_t* striped = right_features_.Reserve(0) +
-                       static_cast<size_t>(y) * plan.planes * plan.stripes * plan.right_stride;
+    const size_t plane = plan.stripes * plan.right_stride;
+    uint8_t* striped = right_features_.Reserve(0) + static_cast<size_t>(y) * plan.planes * plane;
     for (int p = 0; p < plan.planes; ++p) {
-      kernels_->stripe_row(plan, right.data() + p * width,
-                           striped + p * plan.stripes * plan.right_stride);
+      kernels_->stripe_row(plan, right.data() + p * width, striped + p * plane);
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <immintrin.h>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace {
@@ -30,7 +31,7 @@ struct Simd {
   template <int n>
   static V EveryNth(const uint8_t* last) {
     alignas(32) uint8_t a[kLanes];
-    for (int k = 0; k < kLanes; ++k) a[k] = last[-k * n];
+    for (int k = 0; k < kLanes; ++k) a[k] = last[-ptrdiff_t{k} * n];
     return Load(a);
   }
 

@@ -2,6 +2,7 @@
 
 #include <immintrin.h>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace {
@@ -30,7 +31,7 @@ struct Simd {
 #pragma GCC unroll 4
     for (int j = 0; j < n; ++j) {
       a = _mm512_mask_permutexvar_epi8(a, kPlaces.lanes[j], places,
-                                       _mm512_loadu_si512(last - 64 * j - 63));
+                                       _mm512_loadu_si512(last - ptrdiff_t{64} * j - 63));
     }
     return {a};
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -31,7 +32,7 @@ struct Simd {
   template <int n>
   static V EveryNth(const uint8_t* last) {
     V a;
-    for (int k = 0; k < kLanes; ++k) a[k] = last[-k * n];
+    for (int k = 0; k < kLanes; ++k) a[k] = last[-ptrdiff_t{k} * n];
     return a;
   }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <cstring>
 #include <string>
 
@@ -33,10 +35,10 @@ inline std::string DepthDifference(const DepthMap& a, const DepthMap& b) {
   if (!a.depth_m.SameSizeAs(b.depth_m) || !(a.geometry == b.geometry)) return "size or geometry";
   for (int y = 0; y < a.depth_m.height(); ++y) {
     for (int x = 0; x < a.depth_m.width(); ++x) {
-      const float* const one = a.depth_m.Row(y) + x;
-      const float* const other = b.depth_m.Row(y) + x;
-      if (std::memcmp(one, other, sizeof(float)) == 0) continue;
-      return Str("(", x, ", ", y, "): ", *one, " against ", *other, " m");
+      const float one = a.depth_m.Row(y)[x];
+      const float other = b.depth_m.Row(y)[x];
+      if (std::bit_cast<uint32_t>(one) == std::bit_cast<uint32_t>(other)) continue;
+      return Str("(", x, ", ", y, "): ", one, " against ", other, " m");
     }
   }
   return "";

@@ -1,5 +1,6 @@
 import { Button, Group, NativeSelect } from '@mantine/core';
 import { useQuery } from '@tanstack/react-query';
+import { useState } from 'react';
 import { useTranslation } from 'react-i18next';
 
 import { api } from '../api/clients';
@@ -16,6 +17,8 @@ interface Props {
 /** Which results the page is about. */
 export function SelectionBar({ selection, onChange, onRefresh }: Props) {
   const { t } = useTranslation('results');
+  // Fields are new after a reset: nothing that was typed and is still on its way stays in them.
+  const [resets, setResets] = useState(0);
   const jobs = useQuery({
     queryKey: ['results', 'jobs'],
     queryFn: ({ signal }) => api.sequences.listSequences({}, { signal }),
@@ -30,8 +33,14 @@ export function SelectionBar({ selection, onChange, onRefresh }: Props) {
       />
       {selection.range === 'custom' && (
         <>
-          <InstantInput label={t('from')} ms={selection.fromMs} onChange={(fromMs) => onChange({ fromMs })} />
           <InstantInput
+            key={`from ${resets}`}
+            label={t('from')}
+            ms={selection.fromMs}
+            onChange={(fromMs) => onChange({ fromMs })}
+          />
+          <InstantInput
+            key={`until ${resets}`}
             label={t('until')}
             ms={selection.untilMs}
             onChange={(untilMs) => onChange({ untilMs })}
@@ -39,6 +48,7 @@ export function SelectionBar({ selection, onChange, onRefresh }: Props) {
         </>
       )}
       <WordInput
+        key={`job ${resets}`}
         label={t('job')}
         value={selection.job}
         onChange={(job) => onChange({ job })}
@@ -67,8 +77,19 @@ export function SelectionBar({ selection, onChange, onRefresh }: Props) {
           ),
         ]}
       />
-      <WordInput label={t('part')} value={selection.part} onChange={(part) => onChange({ part })} />
-      <Button variant="default" onClick={() => onChange(everything)}>
+      <WordInput
+        key={`part ${resets}`}
+        label={t('part')}
+        value={selection.part}
+        onChange={(part) => onChange({ part })}
+      />
+      <Button
+        variant="default"
+        onClick={() => {
+          setResets(resets + 1);
+          onChange(everything);
+        }}
+      >
         {t('reset')}
       </Button>
       <Button onClick={onRefresh}>{t('refresh')}</Button>
