@@ -15,7 +15,7 @@ class CudaMatcher final : public StereoMatcher {
       : options_(options), seat_(std::move(seat)) {}
 
   Status Start() {
-    const Status made = MakeExecutor();
+    Status made = MakeExecutor();
     if (made.ok() || made.code() == StatusCode::kResourceExhausted ||
         made.code() == StatusCode::kFailedPrecondition) {
       return made;

@@ -78,7 +78,7 @@ def check(build, batch, number):
     run = subprocess.run(
         ["clang-tidy", "--quiet", "-p", str(folder), # Findings about the whole that no single file would have.
          "--checks=-bugprone-suspicious-include,-bugprone-forward-declaration-namespace",
-         "--header-filter=/(engine|server|client|proto/wire|tests)/[^:]*\\.(h|cc)$",
+         "--header-filter=/(engine|gpu|server|client|proto/wire|tests)/[^:]*\\.(h|cc)$",
          "--config-file=.clang-tidy", str(together)],
         capture_output=True, text=True, check=False)
     return run.returncode == 0, run.stdout if run.returncode else ""

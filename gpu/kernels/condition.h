@@ -2,6 +2,7 @@
 // that nothing goes to the host and back within a frame.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 
@@ -36,7 +37,7 @@ VS_KERNEL CountNoise(const Frame frame, int columns, int blocks, int step) {
   uint32_t counts = 1;  // unless greys reach an end of the scale
   constexpr int kRowsOfWarp = kWarpSize / kNoiseBlock;
   for (int row = y; row < y + kNoiseBlock; row += kRowsOfWarp) {
-    const uint8_t* const at = frame.input[view] + row * frame.width + x;
+    const uint8_t* const at = frame.input[view] + ptrdiff_t{row} * frame.width + x;
     response += static_cast<uint32_t>(MaskResponse(at, frame.width));
     if (*at < 6 || *at > 249) counts = 0;
   }
@@ -64,7 +65,7 @@ VS_KERNEL CountGreys(const Frame frame, const CommonColumns columns) {
   SyncBlock();
   const int end = Lesser((BlockX() + 1) * kCountedRows, frame.height);
   for (int y = BlockX() * kCountedRows; y < end; ++y) {
-    const uint8_t* const row = frame.input[view] + y * frame.width;
+    const uint8_t* const row = frame.input[view] + ptrdiff_t{y} * frame.width;
     for (int x = columns.begin[view] + ThreadInBlock(); x < columns.end[view];
          x += ThreadsInBlock()) {
       AtomicAdd(&counts[row[x]], 1);

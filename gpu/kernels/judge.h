@@ -1,6 +1,7 @@
 // From winners to disparities: the rules of engine/stereo/selection.h, a thread for each pixel.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "engine/image/disparity_map.h"
@@ -99,7 +100,7 @@ VS_KERNEL JudgePixels(const Frame frame) {
                       .before = frame.winner_before[pixel],
                       .after = frame.winner_after[pixel]};
   const Judged judged = JudgePixel(frame.settings, frame.grey[kLeft], frame.width, frame.height, x,
-                                   y, winner, frame.right_index + y * frame.width);
+                                   y, winner, frame.right_index + ptrdiff_t{y} * frame.width);
   frame.map[0].disparity[pixel] = static_cast<uint16_t>(judged.stored);
   frame.map[0].confidence[pixel] = static_cast<uint8_t>(judged.confidence);
   frame.map[0].reason[pixel] = static_cast<uint8_t>(judged.reason);

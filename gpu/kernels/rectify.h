@@ -176,7 +176,7 @@ VS_KERNEL HalvePictures(const Frame frame) {
   const int x = ThreadInGrid();
   if (x >= width) return;
   const uint8_t* const above =
-      frame.uploaded[view] + static_cast<size_t>(2 * y) * frame.raw_width + 2 * x;
+      frame.uploaded[view] + size_t{2} * y * frame.raw_width + ptrdiff_t{2} * x;
   const uint8_t* const below = above + frame.raw_width;
   const int sum = above[0] + above[1] + below[0] + below[1];
   frame.halved[view][static_cast<size_t>(y) * width + x] = static_cast<uint8_t>((sum + 2) / 4);
