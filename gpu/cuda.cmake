@@ -8,7 +8,10 @@ if(VS_WITH_CUDA STREQUAL "OFF")
 endif()
 
 # Often installed without being on the PATH.
-find_program(VS_NVCC nvcc HINTS $ENV{CUDACXX} $ENV{CUDA_PATH}/bin PATHS /usr/local/cuda/bin)
+if(EXISTS "$ENV{CUDACXX}")
+  set(VS_NVCC "$ENV{CUDACXX}" CACHE FILEPATH "The CUDA compiler")
+endif()
+find_program(VS_NVCC nvcc HINTS $ENV{CUDA_PATH}/bin PATHS /usr/local/cuda/bin)
 set(vs_nvcc_version 0)
 if(VS_NVCC)
   execute_process(COMMAND ${VS_NVCC} --version OUTPUT_VARIABLE vs_nvcc_says)
@@ -36,8 +39,20 @@ list(POP_BACK CMAKE_CUDA_ARCHITECTURES vs_last)
 list(TRANSFORM CMAKE_CUDA_ARCHITECTURES APPEND -real)
 list(APPEND CMAKE_CUDA_ARCHITECTURES ${vs_last})
 
-set(CMAKE_CUDA_COMPILER ${VS_NVCC})
 set(CMAKE_CUDA_RUNTIME_LIBRARY Static)  # so that the programs start where there is no CUDA
+set(ENV{CUDACXX} ${VS_NVCC})
+if(VS_WITH_CUDA STREQUAL "AUTO")
+  # A compiler that does not get along with the host's, or half a toolkit, is as good as none.
+  include(CheckLanguage)
+  check_language(CUDA)
+  if(CMAKE_CUDA_COMPILER)
+    find_package(CUDAToolkit QUIET)
+  endif()
+  if(NOT CUDAToolkit_FOUND)
+    message(STATUS "${VS_NVCC} does not work here: built without the matcher \"cuda\"")
+    return()
+  endif()
+endif()
 enable_language(CUDA)
 # CMake 3.25 does not know that nvcc knows C++20.
 if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)

@@ -11,10 +11,12 @@
 namespace vs::gpu {
 namespace {
 
-// After these no call on the context succeeds any more.
+// After these no call on the context succeeds any more. Of some CUDA's documentation says that the
+// process must be started anew: where a reset does not help, the processor goes on.
 bool SpoilsContext(cudaError_t error) {
   switch (error) {
     case cudaErrorAssert:
+    case cudaErrorContained:
     case cudaErrorContextIsDestroyed:
     case cudaErrorDevicesUnavailable:
     case cudaErrorDeviceUninitialized:
@@ -29,8 +31,10 @@ bool SpoilsContext(cudaError_t error) {
     case cudaErrorLaunchFailure:
     case cudaErrorLaunchTimeout:
     case cudaErrorMisalignedAddress:
+    case cudaErrorMpsClientTerminated:
     case cudaErrorNvlinkUncorrectable:
     case cudaErrorSystemNotReady:
+    case cudaErrorTensorMemoryLeak:
     case cudaErrorUnknown:
       return true;
     default:
@@ -67,8 +71,10 @@ Result<std::vector<DeviceInfo>> FindDevices() {
   for (int k = 0; k < count; ++k) {
     cudaDeviceProp properties{};
     const cudaError_t asked = cudaGetDeviceProperties(&properties, k);
-    if (asked != cudaSuccess) {
-      return Unavailable(Str("GPU ", k, ": cudaGetDeviceProperties: ", cudaGetErrorName(asked)));
+    if (asked != cudaSuccess) {  // it keeps its place: others are told by their index
+      (void)cudaGetLastError();
+      devices.push_back({.name = Str("cannot be read: ", cudaGetErrorName(asked))});
+      continue;
     }
     devices.push_back({.name = properties.name,
                        .memory_bytes = properties.totalGlobalMem,

@@ -64,6 +64,7 @@ class CudaExecutor final : public Executor {
 
  private:
   Status MakeRoom(const StereoPlan& plan, int width, int height);
+  void ForgetStages();
   void GiveBack();
   Status Record();
   void Stage(const GreyImage& picture, int view);
@@ -139,6 +140,12 @@ Status CudaExecutor::Prepare(const StereoPlan& plan, int width, int height) {
 
 Status CudaExecutor::MakeRoom(const StereoPlan& plan, int width, int height) {
   const size_t needed = FrameMemory(plan, width, height, nullptr).Bytes();
+  ForgetStages();
+  // A parameter that is changed while others work asks for no memory: that stops the whole device.
+  if (needed <= bytes_ && needed >= bytes_ / 2) {
+    frame_ = FrameMemory(plan, width, height, memory_).frame();
+    return {};
+  }
   GiveBack();
   void* memory = nullptr;
   const cudaError_t got = cudaMalloc(&memory, needed);
@@ -160,11 +167,16 @@ Status CudaExecutor::MakeRoom(const StereoPlan& plan, int width, int height) {
   return {};
 }
 
-void CudaExecutor::GiveBack() {
-  if (stages_ != nullptr)
+void CudaExecutor::ForgetStages() {
+  if (stages_ != nullptr) {
     (void)device_.Check(cudaGraphExecDestroy(stages_), "cudaGraphExecDestroy");
-  if (memory_ != nullptr) (void)device_.Check(cudaFree(memory_), "cudaFree");
+  }
   stages_ = nullptr;
+}
+
+void CudaExecutor::GiveBack() {
+  ForgetStages();
+  if (memory_ != nullptr) (void)device_.Check(cudaFree(memory_), "cudaFree");
   memory_ = nullptr;
   bytes_ = 0;
 }

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "engine/base/log.h"
 #include "engine/base/str.h"
@@ -20,8 +21,10 @@ class CudaMatcher final : public StereoMatcher {
         made.code() == StatusCode::kFailedPrecondition) {
       return made;
     }
-    return DoWithout(made);
+    DoWithout(made);
+    return MakeSubstitute();
   }
+  int device() const { return seat_.device(); }
 
   // On the device; of the substitute's, while that works.
   size_t WorkingBytes() const override {
@@ -49,8 +52,9 @@ class CudaMatcher final : public StereoMatcher {
       }
       const bool refused = result.error().code() == StatusCode::kResourceExhausted;
       if (refused && executor_ != nullptr && substitute_ == nullptr) return result;
-      VS_RETURN_IF_ERROR(DoWithout(result.error()));
+      DoWithout(result.error());
     }
+    VS_RETURN_IF_ERROR(MakeSubstitute());
     return substitute_->Process(left, right, plan, threads, pool);
   }
 
@@ -84,10 +88,13 @@ class CudaMatcher final : public StereoMatcher {
     return {};
   }
 
-  Status DoWithout(const Status& why) {
+  void DoWithout(const Status& why) {
     executor_.reset();
     failed_ns_ = NowNs();
     seat_.Fails(why);
+  }
+
+  Status MakeSubstitute() {
     if (substitute_ != nullptr) return {};
     VS_ASSIGN_OR_RETURN(substitute_, options_.make_substitute());
     return {};
@@ -106,10 +113,17 @@ class CudaMatcher final : public StereoMatcher {
 
 Result<std::unique_ptr<StereoMatcher>> MakeCudaMatcher(const CudaMatcherOptions& options,
                                                        int device) {
-  VS_ASSIGN_OR_RETURN(DeviceBoard::Seat seat, options.board->Take(device));
-  auto matcher = std::make_unique<CudaMatcher>(options, std::move(seat));
-  VS_RETURN_IF_ERROR(matcher->Start());
-  return Result<std::unique_ptr<StereoMatcher>>(std::move(matcher));
+  std::vector<int> refused;  // devices
+  Status why;
+  while (true) {
+    Result<DeviceBoard::Seat> seat = options.board->Take(device, refused);
+    if (!seat.has_value()) return refused.empty() ? seat.error() : why;
+    auto matcher = std::make_unique<CudaMatcher>(options, *std::move(seat));
+    why = matcher->Start();
+    if (why.ok()) return Result<std::unique_ptr<StereoMatcher>>(std::move(matcher));
+    if (device != DeviceBoard::kAny) return why;
+    refused.push_back(matcher->device());
+  }
 }
 
 }  // namespace vs::gpu

@@ -1,6 +1,8 @@
 #include "gpu/device_board.h"
 
 #include <algorithm>
+#include <iterator>
+#include <tuple>
 #include <utility>
 
 #include "engine/base/str.h"
@@ -34,22 +36,24 @@ void DeviceBoard::Seat::Works() {
   failing_ = false;
 }
 
-Result<DeviceBoard::Seat> DeviceBoard::Take(int device) {
+Result<DeviceBoard::Seat> DeviceBoard::Take(int device, const std::vector<int>& without) {
   MutexLock lock(mutex_);
   const auto count = static_cast<int>(entries_.size());
-  if (device >= count || (device == kAny && count == 0)) {
+  if (device >= count || (device == kAny && std::ssize(without) >= count)) {
     return NotFound(Str("there is no GPU ", std::max(device, 0), "; this machine has ", count,
                         count > 0 ? Str(", from 0 to ", count - 1) : ""));
   }
   if (device == kAny) {
-    const auto best =
-        std::min_element(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
-          if ((a.failing > 0) != (b.failing > 0)) {
-            return b.failing > 0;
-          }
-          return a.seats < b.seats;
-        });
-    device = static_cast<int>(best - entries_.begin());
+    // Of two keys the lesser is the better.
+    const auto key = [&](int k) {
+      const Entry& entry = entries_[static_cast<size_t>(k)];
+      const bool passed_over = std::find(without.begin(), without.end(), k) != without.end();
+      return std::tuple(passed_over, entry.failing > 0, entry.seats);
+    };
+    device = 0;
+    for (int k = 1; k < count; ++k) {
+      if (key(k) < key(device)) device = k;
+    }
   }
   ++entries_[static_cast<size_t>(device)].seats;
   return Seat(this, device);

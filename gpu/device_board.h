@@ -39,8 +39,9 @@ class DeviceBoard {
   };
 
   // On this device; or by kAny on the one with the fewest matchers, devices that fail last, then
-  // the lowest index. NOT_FOUND says which devices there are. The board must outlive the seat.
-  Result<Seat> Take(int device);
+  // the lowest index, and none of `without`. NOT_FOUND says which devices there are. The board must
+  // outlive the seat.
+  Result<Seat> Take(int device, const std::vector<int>& without = {});
 
   struct Fault {
     int device = 0;

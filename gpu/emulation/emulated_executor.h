@@ -23,8 +23,8 @@ class EmulatedLaunch {
   uint32_t seed_;
 };
 
-// All stages on the CPU, in memory that is poisoned before each frame. For tests: 1000 times slower
-// than a device.
+// All stages on the CPU, in memory that is poisoned before each frame. For tests: very
+// much slower than a device.
 std::unique_ptr<Executor> MakeEmulatedExecutor(uint32_t seed);
 
 }  // namespace vs::gpu

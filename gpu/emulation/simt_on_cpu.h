@@ -116,6 +116,4 @@ inline uint32_t MinPairs(uint32_t a, uint32_t b) {
 }
 inline uint32_t AddMinPairs(uint32_t a, uint32_t b, uint32_t c) { return MinPairs(a + b, c); }
 
-inline constexpr bool kHasPairs = true;
-
 }  // namespace vs::gpu

@@ -1,6 +1,6 @@
 // Medians of windows: the plain one (engine/stereo/median_filter.h) and, over pixels of similar
 // grey, the gated one and the filling of holes (engine/stereo/gated_filter.h). A thread for each
-// pixel; what neighbours read is in the cache already.
+// pixel; what neighbours read should be in the cache.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // Rectified pictures of raw ones: the rules of engine/image/{remap,resample}.h, a thread for each
-// pixel. A warp reads what lies together, so the cache gives nearly all of it.
+// pixel. A warp reads what lies together, so the cache should give nearly all of it.
 #pragma once
 
 #include <cstddef>

@@ -61,19 +61,12 @@ VS_ON_DEVICE int CountBits(uint32_t v) { return __popc(v); }
 VS_ON_DEVICE uint32_t BytePermute(uint32_t a, uint32_t b, uint32_t selector) {
   return __byte_perm(a, b, selector);
 }
-// Pairs of 16 bits: from sm_90 on each is one instruction (DPX).
+// Pairs of 16 bits: from sm_90 on these are meant to be one instruction each (DPX).
 VS_ON_DEVICE uint32_t MinPairs(uint32_t a, uint32_t b) { return __vminu2(a, b); }
 VS_ON_DEVICE uint32_t AddMinPairs(uint32_t a, uint32_t b, uint32_t c) {
   return __viaddmin_u16x2(a, b, c);
 }
 
 #undef VS_ON_DEVICE
-
-// Whether the pairs above are instructions of the device.
-#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 900
-inline constexpr bool kHasPairs = false;
-#else
-inline constexpr bool kHasPairs = true;
-#endif
 
 }  // namespace vs::gpu

@@ -84,11 +84,11 @@ class CudaMatcherTest : public testing::Test {
               ++devices_.made[device];
               return std::make_unique<FakeExecutor>(&devices_, device);
             },
-            .make_substitute =
-                [this] {
-                  ++substitutes_;
-                  return StereoMatchers::Get().Make("reference");
-                },
+            .make_substitute = [this]() -> Result<std::unique_ptr<StereoMatcher>> {
+              VS_RETURN_IF_ERROR(FakeDevices::Next(&substitute_outcomes_));
+              ++substitutes_;
+              return StereoMatchers::Get().Make("reference");
+            },
             .clock = &clock_,
             .board = &board_};
   }
@@ -116,6 +116,7 @@ class CudaMatcherTest : public testing::Test {
   test::FakeClock clock_;
   FakeDevices devices_;
   int substitutes_ = 0;
+  std::deque<Status> substitute_outcomes_;  // of the next ones; then all are made
   DeviceBoard board_{2};
   std::unique_ptr<StereoMatcher> matcher_;
 };
@@ -233,6 +234,24 @@ TEST_F(CudaMatcherTest, AFullDeviceIsRefusedAtTheStart) {
   const auto matcher = MakeCudaMatcher(Options(), 0);
   ASSERT_FALSE(matcher.has_value());
   EXPECT_EQ(matcher.error().code(), StatusCode::kResourceExhausted);
+}
+
+TEST_F(CudaMatcherTest, AFullDeviceIsPassedOverWhileThereAreOthers) {
+  devices_.make_outcomes = {ResourceExhausted("GPU 0 is full")};
+  Start();
+  EXPECT_EQ(devices_.made, (std::map<int, int>{{1, 1}}));
+  devices_.make_outcomes = {ResourceExhausted("GPU 0 is full"), ResourceExhausted("GPU 1 is full")};
+  const auto matcher = MakeCudaMatcher(Options(), DeviceBoard::kAny);
+  ASSERT_FALSE(matcher.has_value());
+  EXPECT_EQ(matcher.error().message(), "GPU 1 is full");
+}
+
+TEST_F(CudaMatcherTest, OnlyFramesAreLostWhileThereIsNoSubstituteEither) {
+  Start();
+  devices_.outcomes = {broken_, broken_};
+  substitute_outcomes_ = {ResourceExhausted("no memory for threads")};
+  EXPECT_EQ(WhoMatched(), "RESOURCE_EXHAUSTED: no memory for threads");
+  EXPECT_EQ(WhoMatched(), "substitute");
 }
 
 TEST_F(CudaMatcherTest, MatchersSpreadOverTheDevices) {
