@@ -7,17 +7,20 @@
 //   stages    from the first kernel to the last, by the device's own clock
 //   whole     from two pictures in ordinary memory to the map, by ours
 //   fps       with two executors at once, frames of both together
-// and beside them what would be left if nothing else mattered:
-//   memory    costs and each volume of sums written and read once, at the memory's nominal rate
+// and beside them what would be left if nothing else mattered, in ms; the rates are nominal:
+//   memory    each volume of costs and of sums written and read once
 //   add       5.5 instructions for each two cells of each path, 64 a clock and multiprocessor
+//   count     a bit count for each 32 bits of each cell's code, 16 a clock and multiprocessor
+//   chain     the pixels of the longest line one after the other, 280 clocks each
 // Where there is no GPU it says why and exits with 0.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <exception>
+#include <future>
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -25,6 +28,7 @@
 
 #include "engine/base/str.h"
 #include "engine/sim/ideal_stereo.h"
+#include "engine/stereo/census.h"
 #include "engine/stereo/sgm_presets.h"
 #include "gpu/cuda_executor.h"
 #include "gpu/devices.h"
@@ -57,6 +61,8 @@ struct Figures {
   double fps = 0;
   double memory_ms = 0;
   double add_ms = 0;
+  double count_ms = 0;
+  double chain_ms = 0;
   size_t device_bytes = 0;
 };
 
@@ -95,10 +101,14 @@ void AddFloors(const gpu::DeviceInfo& device, const SgmSettings& settings, const
       gpu::FrameMemory({.settings = settings}, pair.left.width(), pair.left.height(), nullptr)
           .frame();
   const double cells = static_cast<double>(frame.Pixels()) * settings.num_disparities;
-  const double bytes = 2 * cells * (1 + frame.sum_count);
+  const int volumes = 1 + (frame.other_costs != nullptr ? 1 : 0) + frame.sum_count;
+  const double bytes = 2 * cells * volumes;
   if (device.memory_bytes_per_s > 0) figures->memory_ms = 1e3 * bytes / device.memory_bytes_per_s;
-  const double per_second = 64 * device.clock_hz * device.multiprocessors;
-  if (per_second > 0) figures->add_ms = 1e3 * 5.5 / 2 * cells * settings.directions / per_second;
+  const double clocks_per_ms = device.clock_hz * device.multiprocessors / 1e3;
+  if (clocks_per_ms == 0) return;
+  figures->add_ms = 5.5 / 2 * cells * settings.directions / (64 * clocks_per_ms);
+  figures->count_ms = (CensusBytes(settings.census) + 3) / 4 * cells / (16 * clocks_per_ms);
+  figures->chain_ms = 1e3 * 280 * std::max(pair.left.width(), pair.left.height()) / device.clock_hz;
 }
 
 Figures Measure(const Options& options, const Pair& pair, const SgmSettings& settings) {
@@ -122,9 +132,9 @@ Figures Measure(const Options& options, const Pair& pair, const SgmSettings& set
     for (int k = 0; k < frames; ++k) one->Frame();
   };
   const auto begin = Clock::now();
-  std::thread beside(run, &other);
+  std::future<void> beside = std::async(std::launch::async, run, &other);
   run(&lane);
-  beside.join();
+  beside.get();
   figures.fps = 2e3 * frames / MillisecondsSince(begin);
   AddFloors((*gpu::Devices())[static_cast<size_t>(options.device)], settings, pair, &figures);
   return figures;
@@ -138,12 +148,14 @@ void Print(const std::string& name, const Figures& f, bool json) {
                                        {"fps", f.fps},
                                        {"memory_floor_ms", f.memory_ms},
                                        {"add_floor_ms", f.add_ms},
+                                       {"count_floor_ms", f.count_ms},
+                                       {"chain_floor_ms", f.chain_ms},
                                        {"device_bytes", f.device_bytes}}
                             .dump()
                             .c_str());
   } else {
-    std::printf("%-24s %8.3f %8.3f %8.0f %9.3f %8.3f %9.0f\n", name.c_str(), f.stages_ms,
-                f.whole_ms, f.fps, f.memory_ms, f.add_ms,
+    std::printf("%-24s %8.3f %8.3f %8.0f %8.3f %8.3f %8.3f %8.3f %6.0f\n", name.c_str(),
+                f.stages_ms, f.whole_ms, f.fps, f.memory_ms, f.add_ms, f.count_ms, f.chain_ms,
                 static_cast<double>(f.device_bytes) / 1e6);
   }
   std::fflush(stdout);
@@ -168,8 +180,8 @@ void MeasureAll(const Options& options) {
     const gpu::DeviceInfo& device = (*gpu::Devices())[static_cast<size_t>(options.device)];
     std::printf("GPU %d: %s, compute capability %s, driver for CUDA %s\n", options.device,
                 device.name.c_str(), device.compute.c_str(), device.driver.c_str());
-    std::printf("%-24s %8s %8s %8s %9s %8s %9s\n", "case", "stages", "whole", "fps", "memory",
-                "add", "MB");
+    std::printf("%-24s %8s %8s %8s %8s %8s %8s %8s %6s\n", "case", "stages", "whole", "fps",
+                "memory", "add", "count", "chain", "MB");
   }
   BufferPool pool;
   for (const Pair& pair : Pairs(pool)) {
@@ -207,7 +219,12 @@ int Main(int argc, char** argv) {
     std::fprintf(stderr, "gpu_bench: %s\n", executor.error().ToString().c_str());
     return 1;
   }
-  MeasureAll(options);
+  try {
+    MeasureAll(options);
+  } catch (const std::exception& error) {  // a frame that failed
+    std::fprintf(stderr, "gpu_bench: %s\n", error.what());
+    return 1;
+  }
   return 0;
 }
 
