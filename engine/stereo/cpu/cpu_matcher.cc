@@ -127,7 +127,7 @@ class CpuMatcher final : public StereoMatcher {
   PaddedPicture right_;
   PaddedPicture guide_;  // only if left_ is not the picture as the camera saw it
   SweepFrame frame_;
-  std::vector<std::vector<uint8_t>> feature_rows_;  // by part
+  std::vector<std::vector<uint8_t>> feature_rows_;  // by part; see Kernels::stripe_row
   std::vector<std::unique_ptr<Sweep>> sweeps_;
   CellMemory layout_;
   CellMemory left_features_;
@@ -190,7 +190,8 @@ Status CpuMatcher::Prepare(const GreyImage& left, const GreyImage& right,
   plan.right_view = settings.left_right_check;
 
   feature_rows_.resize(std::max(feature_rows_.size(), static_cast<size_t>(parts)));
-  for (int part = 0; part < parts; ++part) feature_rows_[part].resize(width * plan.planes);
+  for (int part = 0; part < parts; ++part)
+    feature_rows_[part].resize(kernels_->lanes + width * plan.planes);
 
   const Shares shares = SharesOf(settings.directions);
   const size_t sums = shares.backward == 0 ? 0 : width * height * plan.cell;
@@ -232,15 +233,15 @@ Status CpuMatcher::Prepare(const GreyImage& left, const GreyImage& right,
 void CpuMatcher::MakeFeatures(const SgmSettings& settings, int part, RowRange rows) {
   const Plan plan = frame_.plan;  // a copy that no byte that is stored could change
   const auto width = static_cast<size_t>(plan.width);
-  std::vector<uint8_t>& right = feature_rows_[part];
+  uint8_t* const right = feature_rows_[part].data() + kernels_->lanes;
   for (int y = rows.begin; y < rows.end; ++y) {
     FeatureRowOf(left_, settings, y,
                  left_features_.Reserve(0) + static_cast<size_t>(y) * plan.planes * width);
-    FeatureRowOf(right_, settings, y, right.data());
+    FeatureRowOf(right_, settings, y, right);
     const size_t plane = plan.stripes * plan.right_stride;
     uint8_t* striped = right_features_.Reserve(0) + static_cast<size_t>(y) * plan.planes * plane;
     for (int p = 0; p < plan.planes; ++p) {
-      kernels_->stripe_row(plan, right.data() + p * width, striped + p * plane);
+      kernels_->stripe_row(plan, right + p * width, striped + p * plane);
     }
   }
 }

@@ -154,7 +154,7 @@ struct Kernels {
   void (*layout)(const Plan& plan, uint8_t* out);
   void (*census_row)(const CensusRowWork& work);
   // A row of one plane of the right view in the striped layout: `striped` has plan.stripes rows of
-  // plan.right_stride bytes.
+  // plan.right_stride bytes. May read up to `lanes` bytes before the row.
   void (*stripe_row)(const Plan& plan, const uint8_t* row, uint8_t* striped);
   // P2 between the pixels of two rows of grey values, count pixels each; may write up to the next
   // multiple of `lanes`, and read as far.
