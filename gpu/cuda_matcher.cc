@@ -26,6 +26,16 @@ class CudaMatcher final : public StereoMatcher {
   }
   int device() const { return seat_.device(); }
 
+  // Of any other error the first frame takes care.
+  Status Reserve(const StereoPlan& plan, int width, int height) override {
+    const RectifiedGeometry geometry = GeometryOf(plan, width, height);
+    const bool matched_here =
+        !plan.region.has_value() && ValidateSize(geometry.width, geometry.height).ok();
+    if (executor_ == nullptr || !matched_here) return {};
+    Status reserved = executor_->Prepare(plan, width, height);
+    return reserved.code() == StatusCode::kResourceExhausted ? reserved : Status();
+  }
+
   // On the device; of the substitute's, while that works.
   size_t WorkingBytes() const override {
     if (executor_ != nullptr) return executor_->DeviceBytes();

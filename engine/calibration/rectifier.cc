@@ -179,7 +179,7 @@ Result<StereoFrame> Rectifier::Rectify(const StereoFrame& raw, BufferPool& pool)
   const auto rectify = [&](const FramePtr& frame, const RemapTable& table) -> Result<FramePtr> {
     if (frame == nullptr) return InvalidArgument("rectification: a picture of the pair is missing");
     const GreyImage& image = frame->image;
-    if (!Fits(image)) {
+    if (!Fits(image.width(), image.height())) {
       return InvalidArgument(Str("rectification: camera ", frame->camera, " gave ", image.width(),
                                  " x ", image.height(), " px, expected ", how.raw_width, " x ",
                                  how.raw_height, " px; set both cameras to the same size"));
@@ -200,9 +200,9 @@ std::shared_ptr<const Rectification> Rectifier::rectification() const {
   return {maps_, &maps_->rectification};
 }
 
-bool Rectifier::Fits(const GreyImage& picture) const {
+bool Rectifier::Fits(int width, int height) const {
   const Rectification& how = maps_->rectification;
-  return picture.width() == how.raw_width && picture.height() == how.raw_height;
+  return width == how.raw_width && height == how.raw_height;
 }
 
 const RectifiedGeometry& Rectifier::geometry() const { return maps_->rectification.geometry; }

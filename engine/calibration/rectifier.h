@@ -43,7 +43,7 @@ class Rectifier {
   // Never null, and the same object for copies of this rectifier.
   std::shared_ptr<const Rectification> rectification() const;
   // Whether it was made for pictures of this size.
-  bool Fits(const GreyImage& picture) const;
+  bool Fits(int width, int height) const;
   // The same pair with rectified pictures and their geometry; no truth, for its pixels moved.
   // Pixels that no camera saw are 0. INVALID_ARGUMENT when a picture has another size.
   Result<StereoFrame> Rectify(const StereoFrame& raw, BufferPool& pool) const;

@@ -75,6 +75,10 @@ StereoMatchers& StereoMatchers::Get() {
   return matchers;
 }
 
+Status StereoMatcher::Reserve(const StereoPlan& /*plan*/, int /*width*/, int /*height*/) {
+  return {};
+}
+
 bool StereoMatchers::Add(std::string name, int speed_rank, MatcherFactory factory) {
   VS_CHECK(std::none_of(entries_.begin(), entries_.end(),
                         [&](const Entry& entry) { return entry.name == name; }));

@@ -37,6 +37,10 @@ class StereoMatcher {
   // these, INVALID_ARGUMENT also for pictures that do not have the raw size.
   Result<StereoResult> Process(const GreyImage& left, const GreyImage& right,
                                const StereoPlan& plan, int threads, BufferPool& pool);
+  // Makes room for pairs of this size that go by `plan`, where the backend has memory of its own to
+  // run out of; others make it with the first pair. RESOURCE_EXHAUSTED says how many bytes are
+  // needed and how many there are.
+  virtual Status Reserve(const StereoPlan& plan, int width, int height);
   // The large memory that it keeps from picture to picture (each backend's text says how much it
   // takes); what the pool holds does not count.
   virtual size_t WorkingBytes() const = 0;

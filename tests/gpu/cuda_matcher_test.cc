@@ -236,6 +236,17 @@ TEST_F(CudaMatcherTest, AFullDeviceIsRefusedAtTheStart) {
   EXPECT_EQ(matcher.error().code(), StatusCode::kResourceExhausted);
 }
 
+TEST_F(CudaMatcherTest, TellsAtTheStartThatThereIsNoRoom) {
+  Start();
+  devices_.room = {ResourceExhausted("needs 500 MB, 3 are free"), broken_};
+  const Status full = matcher_->Reserve({.settings = settings_}, 640, 480);
+  EXPECT_EQ(full.ToString(), "RESOURCE_EXHAUSTED: needs 500 MB, 3 are free");
+  EXPECT_TRUE(matcher_->Reserve({.settings = settings_}, 640, 480).ok())
+      << "the frame deals with it";
+  EXPECT_TRUE(matcher_->Reserve({.settings = settings_}, 640, 480).ok());
+  EXPECT_EQ(WhoMatched(), "device");
+}
+
 TEST_F(CudaMatcherTest, AFullDeviceIsPassedOverWhileThereAreOthers) {
   devices_.make_outcomes = {ResourceExhausted("GPU 0 is full")};
   Start();

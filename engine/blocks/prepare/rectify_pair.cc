@@ -22,7 +22,8 @@ class RectifyPair final : public Block {
       return FailedPrecondition("this pair is rectified already; remove this block");
     }
     if (pair->left == nullptr) return InvalidArgument("the pair has no left picture");
-    VS_ASSIGN_OR_RETURN(const Rectifier* rectifier, rectify.For(pair->left->image));
+    VS_ASSIGN_OR_RETURN(const Rectifier* rectifier,
+                        rectify.For(pair->left->image.width(), pair->left->image.height()));
     VS_ASSIGN_OR_RETURN(StereoFrame result, rectifier->Rectify(*pair, pool()));
     rectified.Set(std::move(result));
     return {};

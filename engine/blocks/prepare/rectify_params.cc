@@ -14,11 +14,10 @@ Status RectifyParams::Start(const Environment& environment) {
 }
 
 // The maps depend on the size of the pictures, which only the first pair tells.
-Result<const Rectifier*> RectifyParams::For(const GreyImage& raw) {
+Result<const Rectifier*> RectifyParams::For(int width, int height) {
   const RectifyOptions options = Options();
-  if (!rectifier_ || !rectifier_->Fits(raw) || options != options_) {
-    VS_ASSIGN_OR_RETURN(rectifier_,
-                        Rectifier::Make(*found_rig_, raw.width(), raw.height(), options));
+  if (!rectifier_ || !rectifier_->Fits(width, height) || options != options_) {
+    VS_ASSIGN_OR_RETURN(rectifier_, Rectifier::Make(*found_rig_, width, height, options));
     options_ = options;
   }
   return &*rectifier_;

@@ -8,7 +8,6 @@
 #include "engine/calibration/rectifier.h"
 #include "engine/core/environment.h"
 #include "engine/core/param.h"
-#include "engine/image/image.h"
 
 namespace vs {
 
@@ -19,9 +18,11 @@ class RectifyParams {
 
   // Finds the rig; for Block::Start(). Errors say which calibration is missing.
   Status Start(const Environment& environment);
-  // For pictures like this one, after Start(); the same until parameters or size change. Errors as
-  // Rectifier::Make.
-  Result<const Rectifier*> For(const GreyImage& raw);
+  // For raw pictures of this size, after Start(); the same until parameters or size change. Errors
+  // as Rectifier::Make.
+  Result<const Rectifier*> For(int width, int height);
+  // The cameras, after Start().
+  const StereoRig& rig() const { return *found_rig_; }
 
  private:
   Result<std::shared_ptr<const StereoRig>> FindRig(const Environment& environment) const;

@@ -32,7 +32,11 @@ class StereoDepth final : public Block {
   Status Start() override {
     VS_RETURN_IF_ERROR(rectify.Start(environment()));
     VS_ASSIGN_OR_RETURN(matcher_, who.MakeMatcher());
-    return {};
+    // For what the cameras were calibrated with: a rig that is wrong, or a device without room for
+    // it, is told now and not with the first pair.
+    const CameraModel& camera = rectify.rig().left;
+    VS_ASSIGN_OR_RETURN(const Rectifier* rectifier, rectify.For(camera.width, camera.height));
+    return matcher_->Reserve(PlanOf(*rectifier), camera.width, camera.height);
   }
 
   Status Run() override {
@@ -44,14 +48,11 @@ class StereoDepth final : public Block {
           "this pair is rectified already; use SgmStereo and DisparityToDepth in place of this "
           "block");
     }
-    VS_ASSIGN_OR_RETURN(const Rectifier* rectifier, rectify.For(pair->left->image));
-    const StereoPlan plan{.rectification = rectifier->rectification(),
-                          .settings = sgm.Settings(),
-                          .region = sgm.Region(),
-                          .depth = true};
+    const GreyImage& raw = pair->left->image;
+    VS_ASSIGN_OR_RETURN(const Rectifier* rectifier, rectify.For(raw.width(), raw.height()));
     VS_ASSIGN_OR_RETURN(
         StereoResult result,
-        matcher_->Process(pair->left->image, pair->right->image, plan, who.Threads(), pool()));
+        matcher_->Process(raw, pair->right->image, PlanOf(*rectifier), who.Threads(), pool()));
     Frame picture = *pair->left;
     picture.image = std::move(result.left);
     left.Set(std::move(picture));
@@ -63,6 +64,13 @@ class StereoDepth final : public Block {
   void Stop() override { matcher_.reset(); }
 
  private:
+  StereoPlan PlanOf(const Rectifier& rectifier) const {
+    return {.rectification = rectifier.rectification(),
+            .settings = sgm.Settings(),
+            .region = sgm.Region(),
+            .depth = true};
+  }
+
   std::unique_ptr<StereoMatcher> matcher_;
 };
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/str.h"
 #include "engine/calibration/rig_file.h"
 #include "engine/sim/demo_rig.h"
 #include "engine/sim/ideal_stereo.h"
@@ -350,6 +351,34 @@ TEST_F(ThreeBlocksAndOne, RefuseTheSame) {
   ASSERT_TRUE(one_.Start().ok());
   one_.Input("pair", Pair());
   EXPECT_THAT(one_.Run().ToString(), HasSubstr("FAILED_PRECONDITION: this pair is rectified"));
+}
+
+// A backend that has no room for anything.
+class FullMatcher final : public StereoMatcher {
+ public:
+  Status Reserve(const StereoPlan& plan, int width, int height) override {
+    return ResourceExhausted(Str("no room for ", width, " x ", height, " px with ",
+                                 plan.settings.num_disparities, " disparities"));
+  }
+  size_t WorkingBytes() const override { return 0; }
+
+ private:
+  Result<DisparityMap> MatchPair(const GreyImage& /*left*/, const GreyImage& /*right*/,
+                                 const SgmSettings& /*settings*/, int /*threads*/,
+                                 BufferPool& /*pool*/) override {
+    return Internal("nobody should get here");
+  }
+};
+VS_REGISTER_MATCHER("full", -1, [] {
+  return Result<std::unique_ptr<StereoMatcher>>(std::make_unique<FullMatcher>());
+});
+
+TEST_F(ThreeBlocksAndOne, DoNotStartWhereThereIsNoRoom) {
+  ASSERT_TRUE(one_.Set("backend", std::string("full")).ok());
+  ASSERT_TRUE(one_.Set("num_disparities", int64_t{48}).ok());
+  const CameraModel camera = LoadRig(folder_ / "demo.json")->left;
+  EXPECT_EQ(one_.Start().ToString(), Str("RESOURCE_EXHAUSTED: no room for ", camera.width, " x ",
+                                         camera.height, " px with 48 disparities"));
 }
 
 TEST_F(ThreeBlocksAndOne, TakeNoMemoryOnceWarm) {
