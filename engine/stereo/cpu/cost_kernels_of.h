@@ -176,11 +176,11 @@ VS_INLINE V PixelCost(const Plan& plan, const uint8_t* left,
     return Simd::Min(Simd::Min(a, b), limit);
   } else {
     constexpr int kBytes = CensusBytesOf(kKind);
-    V cost = Simd::BitCount(Simd::Xor(Simd::Set(left[0]), right.Feature(0, stripe)));
-    for (int b = 1; b < kBytes; ++b) {
-      const V code = Simd::Set(left[b * left_plane]);
-      cost = Simd::Add(cost, Simd::BitCount(Simd::Xor(code, right.Feature(b, stripe))));
-    }
+    const auto different = [&](int b) __attribute__((always_inline)) {
+      return Simd::Xor(Simd::Set(left[b * left_plane]), right.Feature(b, stripe));
+    };
+    V cost = Simd::BitCountOfThree(different(0), different(1), different(2));
+    for (int b = 3; b < kBytes; ++b) cost = Simd::Add(cost, Simd::BitCount(different(b)));
     if constexpr (kBytes > 3) cost = Simd::Average(cost, Simd::Set(0));
     if constexpr (HasAd(kKind)) {
       const V grey = right.Feature(kBytes, stripe);

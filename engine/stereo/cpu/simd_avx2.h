@@ -46,12 +46,18 @@ struct Simd {
   static V Xor(V a, V b) { return {_mm256_xor_si256(a.v, b.v)}; }
   static V Or(V a, V b) { return {_mm256_or_si256(a.v, b.v)}; }
   static V BitCount(V a) {
-    const __m256i counts = _mm256_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4, 0, 1, 1,
-                                            2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4);
-    const __m256i low = _mm256_set1_epi8(15);
-    return {_mm256_add_epi8(
-        _mm256_shuffle_epi8(counts, _mm256_and_si256(a.v, low)),
-        _mm256_shuffle_epi8(counts, _mm256_and_si256(_mm256_srli_epi16(a.v, 4), low)))};
+    return CountBy(_mm256_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4, 0, 1, 1, 2, 1,
+                                    2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4),
+                   a);
+  }
+  // A full adder for each bit: two counts, of its sums and, twice, of its carries.
+  static V BitCountOfThree(V a, V b, V c) {
+    const V ab = Xor(a, b);
+    const V carry = {_mm256_or_si256(_mm256_and_si256(a.v, b.v), _mm256_and_si256(ab.v, c.v))};
+    return Add(BitCount(Xor(ab, c)),
+               CountBy(_mm256_setr_epi8(0, 2, 2, 4, 2, 4, 4, 6, 2, 4, 4, 6, 4, 6, 6, 8, 0, 2, 2, 4,
+                                        2, 4, 4, 6, 2, 4, 4, 6, 4, 6, 6, 8),
+                       carry));
   }
 
   static V IfEqual(V a, V b, V yes, V no) {
@@ -62,6 +68,16 @@ struct Simd {
     return {_mm256_blendv_epi8(yes.v, no.v, not_less)};
   }
 
+  // With the comparison that the minimum has made already.
+  static void TakeLess(V a, V of_a, V* least, V* index) {
+    const V less = Min(a, *least);
+    index->v = _mm256_blendv_epi8(of_a.v, index->v, _mm256_cmpeq_epi8(less.v, least->v));
+    *least = less;
+  }
+  static void TakeLeast(V a, V of_a, V* least, V* index) {
+    *least = Min(a, *least);
+    index->v = _mm256_blendv_epi8(index->v, of_a.v, _mm256_cmpeq_epi8(least->v, a.v));
+  }
   using Exception = uint8_t;  // the lane
   static constexpr Exception kNoException = 255;
   static constexpr Exception Except(int lane) { return static_cast<Exception>(lane); }
@@ -101,6 +117,13 @@ struct Simd {
   static uint8_t Last(V a) { return static_cast<uint8_t>(_mm256_extract_epi8(a.v, 31)); }
 
  private:
+  // The sum of what a table says of both halves of each byte.
+  static V CountBy(__m256i table, V a) {
+    const __m256i low = _mm256_set1_epi8(15);
+    return {_mm256_add_epi8(
+        _mm256_shuffle_epi8(table, _mm256_and_si256(a.v, low)),
+        _mm256_shuffle_epi8(table, _mm256_and_si256(_mm256_srli_epi16(a.v, 4), low)))};
+  }
   static __m128i Least(V a) {
     const __m128i half =
         _mm_min_epu8(_mm256_castsi256_si128(a.v), _mm256_extracti128_si256(a.v, 1));

@@ -47,12 +47,23 @@ struct Simd {
   static V Xor(V a, V b) { return {_mm512_xor_si512(a.v, b.v)}; }
   static V Or(V a, V b) { return {_mm512_or_si512(a.v, b.v)}; }
   static V BitCount(V a) { return {_mm512_popcnt_epi8(a.v)}; }
+  static V BitCountOfThree(V a, V b, V c) {
+    return Add(Add(BitCount(a), BitCount(b)), BitCount(c));
+  }
 
   static V IfEqual(V a, V b, V yes, V no) {
     return {_mm512_mask_blend_epi8(_mm512_cmpeq_epu8_mask(a.v, b.v), no.v, yes.v)};
   }
   static V IfLess(V a, V b, V yes, V no) {
     return {_mm512_mask_blend_epi8(_mm512_cmplt_epu8_mask(a.v, b.v), no.v, yes.v)};
+  }
+  static void TakeLess(V a, V of_a, V* least, V* index) {
+    *index = IfLess(a, *least, of_a, *index);
+    *least = Min(a, *least);
+  }
+  static void TakeLeast(V a, V of_a, V* least, V* index) {
+    *index = IfLess(*least, a, *index, of_a);
+    *least = Min(a, *least);
   }
   using Exception = uint64_t;  // the other lanes
   static constexpr Exception kNoException = ~0ULL;

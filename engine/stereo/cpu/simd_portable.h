@@ -55,10 +55,20 @@ struct Simd {
     a = (a & Set(0x33)) + ((a >> 2) & Set(0x33));
     return (a + (a >> 4)) & Set(0x0f);
   }
+  static V BitCountOfThree(V a, V b, V c) { return BitCount(a) + BitCount(b) + BitCount(c); }
 
   // Lane by lane `yes` or `no`.
   static V IfEqual(V a, V b, V yes, V no) { return a == b ? yes : no; }
   static V IfLess(V a, V b, V yes, V no) { return a < b ? yes : no; }
+  // Where a < least: least = a, index = of_a. TakeLeast takes equal ones, too.
+  static void TakeLess(V a, V of_a, V* least, V* index) {
+    *index = a < *least ? of_a : *index;
+    *least = Min(a, *least);
+  }
+  static void TakeLeast(V a, V of_a, V* least, V* index) {
+    *index = *least < a ? *index : of_a;
+    *least = Min(a, *least);
+  }
 
   // Min(a, b), but a in the excepted lane.
   using Exception = uint8_t;

@@ -96,8 +96,7 @@ VS_INLINE Winner FindWinner(const Layout<kStripes>& layout, const Cell<kStripes>
   V least = sum.v[0];
   V least_index = layout.index.v[0];
   for (int r = 1; r < kStripes; ++r) {
-    least_index = Simd::IfLess(sum.v[r], least, layout.index.v[r], least_index);
-    least = Simd::Min(least, sum.v[r]);
+    Simd::TakeLess(sum.v[r], layout.index.v[r], &least, &least_index);
   }
   const int pair = Simd::LeastPair(
       Simd::MinPairs(Simd::PairLow(least, least_index), Simd::PairHigh(least, least_index)));
@@ -158,11 +157,11 @@ class RightWinners {
     if (state_ == nullptr) return;
 #pragma GCC unroll 16
     for (int r = 0; r < kStripes; ++r) {
-      const V better = backward_
-                           ? Simd::IfLess(least_.v[r], sum.v[r], index_.v[r], layout.index.v[r])
-                           : Simd::IfLess(sum.v[r], least_.v[r], layout.index.v[r], index_.v[r]);
-      index_.v[r] = better;
-      least_.v[r] = Simd::Min(least_.v[r], sum.v[r]);
+      if (backward_) {
+        Simd::TakeLeast(sum.v[r], layout.index.v[r], &least_.v[r], &index_.v[r]);
+      } else {
+        Simd::TakeLess(sum.v[r], layout.index.v[r], &least_.v[r], &index_.v[r]);
+      }
     }
     // Lane 0 of stripe 0 belongs to this right pixel, the others to those left of it.
     const int right = x - plan_.min_disparity;
