@@ -45,8 +45,8 @@ Result<DeviceBoard::Seat> DeviceBoard::Take(int device, const std::vector<int>& 
   }
   if (device == kAny) {
     // Of two keys the lesser is the better.
-    const auto key = [&](int k) {
-      const Entry& entry = entries_[static_cast<size_t>(k)];
+    const auto key = [&entries = entries_, &without](int k) {
+      const Entry& entry = entries[static_cast<size_t>(k)];
       const bool passed_over = std::find(without.begin(), without.end(), k) != without.end();
       return std::tuple(passed_over, entry.failing > 0, entry.seats);
     };

@@ -107,7 +107,8 @@ void AddFloors(const gpu::DeviceInfo& device, const SgmSettings& settings, const
   const double clocks_per_ms = device.clock_hz * device.multiprocessors / 1e3;
   if (clocks_per_ms == 0) return;
   figures->add_ms = 5.5 / 2 * cells * settings.directions / (64 * clocks_per_ms);
-  figures->count_ms = (CensusBytes(settings.census) + 3) / 4 * cells / (16 * clocks_per_ms);
+  const int code_words = (CensusBytes(settings.census) + 3) / 4;
+  figures->count_ms = code_words * cells / (16 * clocks_per_ms);
   figures->chain_ms = 1e3 * 280 * std::max(pair.left.width(), pair.left.height()) / device.clock_hz;
 }
 
