@@ -36,6 +36,20 @@ void DeviceBoard::Seat::Works() {
   failing_ = false;
 }
 
+int DeviceBoard::BestOf(const std::vector<Entry>& entries, const std::vector<int>& without) {
+  // Of two keys the lesser is the better.
+  const auto key = [&](int k) {
+    const Entry& entry = entries[static_cast<size_t>(k)];
+    const bool passed_over = std::find(without.begin(), without.end(), k) != without.end();
+    return std::tuple(passed_over, entry.failing > 0, entry.seats);
+  };
+  int best = 0;
+  for (int k = 1; k < static_cast<int>(entries.size()); ++k) {
+    if (key(k) < key(best)) best = k;
+  }
+  return best;
+}
+
 Result<DeviceBoard::Seat> DeviceBoard::Take(int device, const std::vector<int>& without) {
   MutexLock lock(mutex_);
   const auto count = static_cast<int>(entries_.size());
@@ -43,18 +57,7 @@ Result<DeviceBoard::Seat> DeviceBoard::Take(int device, const std::vector<int>& 
     return NotFound(Str("there is no GPU ", std::max(device, 0), "; this machine has ", count,
                         count > 0 ? Str(", from 0 to ", count - 1) : ""));
   }
-  if (device == kAny) {
-    // Of two keys the lesser is the better.
-    const auto key = [&entries = entries_, &without](int k) {
-      const Entry& entry = entries[static_cast<size_t>(k)];
-      const bool passed_over = std::find(without.begin(), without.end(), k) != without.end();
-      return std::tuple(passed_over, entry.failing > 0, entry.seats);
-    };
-    device = 0;
-    for (int k = 1; k < count; ++k) {
-      if (key(k) < key(device)) device = k;
-    }
-  }
+  if (device == kAny) device = BestOf(entries_, without);
   ++entries_[static_cast<size_t>(device)].seats;
   return Seat(this, device);
 }

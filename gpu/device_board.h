@@ -58,6 +58,8 @@ class DeviceBoard {
     Status why;
   };
 
+  static int BestOf(const std::vector<Entry>& entries, const std::vector<int>& without);
+
   mutable Mutex mutex_;
   std::vector<Entry> entries_ VS_GUARDED_BY(mutex_);
 };
